@@ -72,8 +72,10 @@ def _numbers(model: Any, path: str, noted: bool = False) -> Iterator[Row]:
             yield from _numbers(inner, f"{path}{part.name}.")
 
 
-def present(families: list[ModuleType], models: list[type]) -> None:
+def present() -> None:
     """Give every class of the core its forms."""
+    families = [member for member in vars(_core).values() if isinstance(member, ModuleType)]
+    models = [_core.Gear, _core.Drive, _core.Compensation, _core.Sensors]
     classes = [*models, *(each for family in families for each in vars(family).values() if isinstance(each, type))]
     for each in classes:
         if not hasattr(each, "fields") or each in _constructors:

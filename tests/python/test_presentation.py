@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,8 @@ from strainwave.tuning.loss import ExportLoss
 from tests.support.strategies import made
 
 HOSTILE = "<script>alert(1)</script> & more"
-PUBLIC = (sw, sw.rig, sw.export, sw.diagnose)
+ROOMS = (getattr(sw, name) for name in sw.__all__)
+PUBLIC = (sw, *(room for room in ROOMS if isinstance(room, ModuleType) and hasattr(room, "__all__")))
 TYPES = sorted(
     {
         kind.__name__
@@ -71,17 +73,24 @@ def fitted() -> Iterator[Any]:
     """Yield a fit, and what is computed from it."""
     gear, free = sw.load("hfuc-25-100"), ["friction_input.coulomb", "friction_input.viscous"]
     fit = sw.fit(gear, table(), free)
-    yield from (fit, *fit.estimates, *fit.parts, sw.bootstrap(fit, 20), sw.minima(fit, 3), sw.profile(fit, free[0]))
+    yield from (
+        fit,
+        *fit.estimates,
+        *fit.parts,
+        sw.identification.bootstrap(fit, 20),
+        sw.identification.minima(fit, 3),
+        sw.identification.profile(fit, free[0]),
+    )
     drive = sw.Drive(load=sw.loads.Inertia(inertia=0.1))
     run = sw.simulate(drive, sw.scenario.sine(5.0, frequency=2.0, duration=0.5), sample=1e-2, record=["command", "input_angle"])
     noise = 1e-2 * np.random.default_rng(0).normal(size=len(run))
     log = run.with_column("input_angle", run["input_angle"] + noise, "rad")
-    yield from sw.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
+    yield from sw.identification.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
     found = sw.identify("hfuc-25-100", {"friction": table()}, name=HOSTILE)
     yield from (found, *found.files, *found.parameters, *found.states, *found.checks, found.gear_set)
     yield from sw.predict(found.gear_set, {"friction": table()})
     wanted = ["gear.friction_input.coulomb"]
-    yield sw.plan_experiments(sw.GearSet.read("csg-20-100"), wanted, experiments=["friction"], time=300.0)
+    yield sw.identification.plan_experiments(sw.GearSet.read("csg-20-100"), wanted, experiments=["friction"], time=300.0)
 
 
 def simulated() -> Iterator[Any]:
@@ -91,12 +100,12 @@ def simulated() -> Iterator[Any]:
     command = sw.scenario.sine(amplitude=0.3, frequency=1.0, duration=0.5)
     run = sw.simulate(drive, command, sample=5e-3)
     yield from (gear, sw.load("robot-joint"), sw.Sensors(), sw.Compensation(), gear.stiffness, run, run.end, command)
-    yield from (sw.ScenarioFile(command), sw.linearise(drive))
+    yield from (sw.simulation.ScenarioFile(command), sw.linearise(drive))
     yield sw.Recording({"time": [0.0, 1.0], "torque": [1.0, 2.0]}, {"time": "s", "torque": "N.m"}, HOSTILE)
-    yield sw.MeasuredCommand.of(run) if hasattr(sw.MeasuredCommand, "of") else sw.MeasuredCommand(run)
+    yield sw.analysis.MeasuredCommand(run)
     yield sw.simulate_many(drive, command, {"load.inertia": [0.01, 0.02]}, sample=1e-2)
-    yield sw.derivatives(drive, command, ["load.inertia"], sample=1e-2)
-    yield sw.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
+    yield sw.analysis.derivatives(drive, command, ["load.inertia"], sample=1e-2)
+    yield sw.analysis.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
     yield from (*sw.compare(run, run)[:1], *sw.compare(gear, gear.replace(damping=5.0)))
     torques = sw.Recording({"time": [0.0, 0.1], "torque": [0.0, -129.0]}, {"time": "s", "torque": "N.m"})
     yield from sw.check_ratings(sw.GearSet.read("csg-20-100"), torques)
@@ -105,13 +114,17 @@ def simulated() -> Iterator[Any]:
 def tuned() -> Iterator[Any]:
     """Yield controllers, moves and what a gear can do."""
     law, joint = sw.cascade("robot-joint", period=1e-3), sw.load("robot-joint")
-    yield sw.loop_margins(joint.replace(control=sw.control.Sampled(law=law, period=1e-3)))
-    yield from sw.positioning_error("csg-20-100", load=20.0)
-    yield sw.lost_motion(sw.rig.printed_gear(0), swing=36.0)
-    yield sw.positioning_path([0.1, 0.2], 0.01, speed=0.5, acceleration=1.0)
+    yield sw.tuning.loop_margins(joint.replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    yield from sw.analysis.positioning_error("csg-20-100", load=20.0)
+    yield sw.tuning.lost_motion(sw.rig.printed_gear(0), swing=36.0)
+    yield sw.tuning.positioning_path([0.1, 0.2], 0.01, speed=0.5, acceleration=1.0)
     yield sw.output_torque("csg-20-100", -100.0 * np.linspace(0.0, 1e-3, 50), np.zeros(50))
-    plan = sw.plan_pulses("position-drive", 0.005)
-    yield from (plan, sw.position_by_pulses(plan, tolerance=1e-4), sw.pulse_repeatability(plan, tolerance=1e-4, members=3))
+    plan = sw.tuning.plan_pulses("position-drive", 0.005)
+    yield from (
+        plan,
+        sw.tuning.position_by_pulses(plan, tolerance=1e-4),
+        sw.tuning.pulse_repeatability(plan, tolerance=1e-4, members=3),
+    )
     yield sw.compensate("robot-joint", members=3, travel=0.02)
     yield Compilation("control PID", (CompiledJob("simulate", 1.75, 6.4),))
     yield sw.export.joint(sw.GearSet.read("csg-20-100"))
@@ -123,11 +136,11 @@ def tuned() -> Iterator[Any]:
 def of_orders() -> Iterator[Any]:
     """Yield orders, ripple and transmission error."""
     turned = run_up()
-    yield from (sw.transmission_error(encoders()), sw.ripple(turned, "torque", angle="input_angle", side="input"))
-    yield from (sw.order_amplitudes(turned, "torque", [1.0, 2.0]), sw.campbell(turned, "torque"))
-    yield from sw.order_lines(turned, "torque", [2.0])
+    yield from (sw.transmission_error(encoders()), sw.orders.ripple(turned, "torque", angle="input_angle", side="input"))
+    yield from (sw.orders.order_amplitudes(turned, "torque", [1.0, 2.0]), sw.orders.campbell(turned, "torque"))
+    yield from sw.diagnose.order_lines(turned, "torque", [2.0])
     record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02, "order": 2.0}
-    yield sw.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, **record)
+    yield sw.diagnose.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, **record)
     yield sw.diagnose.MisalignmentEstimate("current", "single", (3e-6, 4e-6), 1e-14 * np.eye(2), 40, 1.1)
 
 

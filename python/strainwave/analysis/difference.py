@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 from math import hypot, isfinite
-from typing import Any
+from typing import Any, TypeAlias
 
 from strainwave import Drive
 from strainwave._core import Gear
@@ -14,7 +14,7 @@ from strainwave.files.gear_file import at
 from strainwave.files.gear_set import GearSet
 from strainwave.presentation import Statement
 
-Model = Gear | Drive | GearSet
+Model: TypeAlias = Gear | Drive | GearSet
 
 
 @dataclass(frozen=True)

@@ -34,7 +34,7 @@ class MeasuredCommand(Pictured):
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "run.csv")
     ...     _ = path.write_text("time [s],command [rad],output_angle [mrad]\\n5,0,0\\n5.1,0.01,0\\n5.5,0.01,9.5\\n")
-    ...     run = sw.MeasuredCommand.read(path)
+    ...     run = sw.analysis.MeasuredCommand.read(path)
     >>> round(1e3 * run.agreement(sw.load("position-drive")).rms, 1)  # mrad
     2.9
     """

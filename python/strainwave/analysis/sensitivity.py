@@ -48,7 +48,7 @@ class Derivatives(ComparedByFields, Pictured):
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+    >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
     >>> round(1e6 * found.effects("output_angle")["load.inertia"], 1)  # urad of the output, rms, by 1 % more inertia
     19.0
     """
@@ -70,7 +70,7 @@ class Derivatives(ComparedByFields, Pictured):
 
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-        >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+        >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
         >>> change = found.effects("output_angle")["load.inertia"]
         >>> heavier = sw.simulate(drive.replace({"load.inertia": 0.0101}), sw.scenario.step(5.0, 0.1), sample=1e-3)
         >>> actual = np.sqrt(np.mean((heavier["output_angle"] - found.run["output_angle"]) ** 2))
@@ -159,7 +159,7 @@ def derivatives(
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+    >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
     >>> found["output_angle", "load.inertia"].shape
     (101,)
     >>> dict(found.parameters)

@@ -83,7 +83,8 @@ def card(shards: Shards, schema: Any) -> str:
         "",
         "## How to make it again",
         "",
-        "`strainwave dataset plan.toml --out folder` makes all files again, and `--member 17` one member alone. "
+        "`strainwave dataset make plan.toml --out folder` makes all files again, and "
+        "`strainwave dataset member plan.toml 17` one member alone. "
         "Files have equal hashes with the versions of `manifest.json` on a processor of the same kind.",
         "",
         "## Faults",

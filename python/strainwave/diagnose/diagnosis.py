@@ -23,7 +23,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import without_name
 from strainwave.orders.lines import SpectrumLine
-from strainwave.orders.ripple import Ripple, ripple
+from strainwave.orders.torque_ripple import Ripple, ripple
 from strainwave.presentation import Presented, Reported
 from strainwave.spline_orders import WAVE_ORDER
 

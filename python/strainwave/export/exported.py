@@ -84,7 +84,7 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
 
     >>> import strainwave as sw
     >>> gear = sw.GearSet.read("csg-20-100")
-    >>> why = sw.Entry("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
+    >>> why = sw.files.Entry("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
     >>> found = sw.export.joint(gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why}))
     >>> found.remarks[-1]
     'gear.friction_input.viscous: identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m'

@@ -16,8 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_checkable
 
-from strainwave import Drive, arguments
-from strainwave import motor as motors
+from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
@@ -130,7 +129,7 @@ class GearSet(Pictured):
         if missing := [name for name in ("motor", "load") if getattr(self, name) is None]:
             missing_parts = f"no [{'] and no ['.join(missing)}]"
             raise ValueError(
-                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave drives lists whole drives"
+                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave list drives lists whole drives"
             )
         return _drive(vars(self))
 
@@ -515,7 +514,7 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
         if not isinstance(key, str):
             raise TypeError(f"a number is named by a text, not {shortened(key)}")
         if not isinstance(entry, kind):
-            raise TypeError(f"{unquoted(key)} must have a strainwave.{kind.__name__}, not {shortened(entry)}")
+            raise TypeError(f"{unquoted(key)} must have a strainwave.files.{kind.__name__}, not {shortened(entry)}")
     return MappingProxyType(dict(entries))
 
 

@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments, typeset
-from strainwave.files.units import check as check_unit
-from strainwave.files.units import convert
+from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.presentation import DIGITS, Pictured, Row

@@ -11,8 +11,8 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
-from strainwave.orders.ripple import Ripple, Side, ripple
 from strainwave.orders.run_up import RunUp, is_run_up, run_up
+from strainwave.orders.torque_ripple import Ripple, Side, ripple
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.presentation import Presented
 from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError

@@ -11,7 +11,7 @@ from strainwave.drawing.style import LIGHT
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from strainwave.orders.ripple import Ripple
+    from strainwave.orders.torque_ripple import Ripple
     from strainwave.orders.two_encoders import TransmissionError
 
 

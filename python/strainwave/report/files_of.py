@@ -9,7 +9,7 @@ from strainwave.diagnose.diagnosis import Diagnosis
 from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
 from strainwave.orders.measured import OrdersFound
-from strainwave.orders.ripple import Ripple
+from strainwave.orders.torque_ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report.compensate import compensate_files
 from strainwave.report.diagnose import diagnose_files

@@ -11,7 +11,7 @@ import numpy as np
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.orders.pictures import draw_error, draw_spectrum
-from strainwave.orders.ripple import Ripple
+from strainwave.orders.torque_ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
 

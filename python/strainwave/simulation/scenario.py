@@ -30,6 +30,17 @@ from strainwave.messages import shortened
 from strainwave.presentation import DIGITS, Pictured, Row, counted
 from strainwave.simulation.memory import check_instants, room_for
 
+__all__ = [
+    "Scenario",
+    "Wave",
+    "chirp",
+    "constant",
+    "pulse_train",
+    "ramp",
+    "sine",
+    "step",
+    "table",
+]
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
@@ -459,3 +470,7 @@ def _from(start: float, duration: float, level: float, slope: float) -> Scenario
     before = [0.0] if start > 0.0 else []
     starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
     return Scenario(duration, starts, levels, slopes)
+
+
+def __dir__() -> list[str]:
+    return __all__

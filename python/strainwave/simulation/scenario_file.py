@@ -105,7 +105,7 @@ class ScenarioFile(Presented):
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> pushed = sw.ScenarioFile(sw.scenario.ramp(5.0, duration=0.2), {"load_torque": 3.0}, {"output_angle": 0.1})
+    >>> pushed = sw.simulation.ScenarioFile(sw.scenario.ramp(5.0, duration=0.2), {"load_torque": 3.0}, {"output_angle": 0.1})
     >>> float(pushed.simulate(drive)["output_angle"][0])
     0.1
     """
@@ -222,10 +222,11 @@ class ScenarioFile(Presented):
 
         >>> import tempfile
         >>> import strainwave as sw
-        >>> wave, drive = sw.ScenarioFile(sw.scenario.sine(0.1, frequency=1.0, duration=2.0)), sw.load("position-drive")
+        >>> drive = sw.load("position-drive")
+        >>> wave = sw.simulation.ScenarioFile(sw.scenario.sine(0.1, frequency=1.0, duration=2.0))
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     wave.save(f"{folder}/wave.toml", drive)
-        ...     sw.ScenarioFile.read(f"{folder}/wave.toml", drive) == wave
+        ...     sw.simulation.ScenarioFile.read(f"{folder}/wave.toml", drive) == wave
         True
         """
         import tomlkit

@@ -44,7 +44,7 @@ class State(Presented, Mapping[str, float]):
         return state
 
     def __init__(self) -> None:
-        raise TypeError("a state is made by a drive's rest(), by sw.equilibrium(...), or is the end of a run")
+        raise TypeError("a state is made by a drive's rest(), by sw.analysis.equilibrium(...), or is the end of a run")
 
     def replace(self, changes: Mapping[str, float] | None = None, /, **named: float) -> State:
         """The same state with other numbers, by their names.
@@ -155,7 +155,7 @@ def same_shape(one: Drive, other: Drive) -> bool:
     return one is other or _core.shape(one) == _core.shape(other)
 
 
-def start_of(drive: Drive, state: object, name: str = "start") -> State:
+def start_of(drive: Drive, state: object, name: str = "initial") -> State:
     """A state given as argument `name`, if it is one of this drive.
 
     Raises:
@@ -164,7 +164,7 @@ def start_of(drive: Drive, state: object, name: str = "start") -> State:
     """
     if not isinstance(state, State):
         raise TypeError(
-            f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one"
+            f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.analysis.equilibrium(...) is one"
         )
     if not same_shape(drive, state.drive):
         mine, given = _core.shape(drive), _core.shape(state.drive)

@@ -38,7 +38,7 @@ class LostMotion(Presented):
         ratio: size of the ratio of the gear, input over output [1]
 
     >>> import strainwave as sw
-    >>> lost = sw.lost_motion(sw.rig.printed_gear(0), swing=36.0)  # N.m of friction and inertia at the output
+    >>> lost = sw.tuning.lost_motion(sw.rig.printed_gear(0), swing=36.0)  # N.m of friction and inertia at the output
     >>> [round(1e3 * angle, 1) for angle in (lost.width, lost.extent, lost.overshoot())]  # mrad at the output
     [8.8, 10.4, 12.4]
     """
@@ -104,11 +104,11 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
             the torque change its size
 
     Source:
-        document T, section "Discussion" (unidirectional positioning); the loop: own derivation
+        the torsional stiffness article, section "Discussion" (unidirectional positioning); the loop: own derivation
 
     >>> import math
     >>> import strainwave as sw
-    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # document T, 0.36 N.m at the input of 1:100
+    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # of the article, 0.36 N.m at the input of 1:100
     >>> round(math.degrees(lost.input_width), 6)
     50.5
     """
@@ -147,7 +147,7 @@ class PositioningPath(Pictured):
         rests: time at the end of the rest at each target [s], shape (n,)
 
     >>> import strainwave as sw
-    >>> path = sw.positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
+    >>> path = sw.tuning.positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
     >>> path.rests.round(3), path.command.value(path.rests).round(6)
     (array([0.875, 2.246]), array([0.2, 0.1]))
     """
@@ -203,7 +203,7 @@ def positioning_path(
         ValueError: there is no target, a number is not finite or out of its range, or the path has too many pieces
 
     Source:
-        document T, section "Discussion"; motion of minimum jerk: FlashHogan1985
+        the torsional stiffness article, section "Discussion"; motion of minimum jerk: FlashHogan1985
 
     >>> path = positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
     >>> [round(float(path.command.value(time)), 9) for time in path.rests]

@@ -15,6 +15,7 @@ from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.presentation import Pictured, Reported, Row
+from strainwave.progress import Progress, in_turn
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting
@@ -163,7 +164,7 @@ def compensate(
     torque: float | None = None,
     members: int = 40,
     seed: int = 0,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Compensated:
     """Return the compensation that gains most over a tuned cascade, judged on gears that a drive may have.
 
@@ -179,7 +180,7 @@ def compensate(
         torque: of the output for the goal of torque, from end to end [N.m]; a fifth of the largest one if not given
         members: number of drawn gears
         seed: of the draw
-        progress: called with what is done next
+        progress: as of `sw.simulate`
 
     Returns:
         The controller chosen, its gain over the cascade, and the figures of all candidates. If no compensation gains, the
@@ -213,26 +214,27 @@ def compensate(
 
     wanted = _long_enough(goal_at(1.0), plant)
     draws, anew = (_drawn(gear_set, plant, members, each, known_load=goal == "torque") for each in (seed, seed + 1))
-    cascades = _cascades(plant, wanted, draws, encoder, progress)
-    best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, progress)
-    chosen = _chosen(best, others, wanted)
-    before, after = _judged_anew(best, chosen, wanted, anew, plant)
-    remarks = list(_remarks(gear_set, plant, wanted, best))
-    if chosen is not best and after is before:
-        remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
-    progress("other conditions")
-    return Compensated(
-        gear_set,
-        wanted,
-        (best, *others),
-        before,
-        after,
-        members,
-        Loops.of(plant, after.candidate.drive.control).margins(),
-        tuple(over_compensation((before, after), wanted, plant)),
-        tuple(conditions((before, after), goal_at, anew, plant)),
-        tuple(remarks),
-    )
+    with in_turn(progress) as turn:
+        cascades = _cascades(plant, wanted, draws, encoder, turn)
+        best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, turn)
+        chosen = _chosen(best, others, wanted)
+        before, after = _judged_anew(best, chosen, wanted, anew, plant)
+        remarks = list(_remarks(gear_set, plant, wanted, best))
+        if chosen is not best and after is before:
+            remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
+        turn("other conditions")
+        return Compensated(
+            gear_set,
+            wanted,
+            (best, *others),
+            before,
+            after,
+            members,
+            Loops.of(plant, after.candidate.drive.control).margins(),
+            tuple(over_compensation((before, after), wanted, plant)),
+            tuple(conditions((before, after), goal_at, anew, plant)),
+            tuple(remarks),
+        )
 
 
 def _refuse_unused(goal: str, **options: float | None) -> None:
@@ -261,16 +263,14 @@ def _long_enough(goal: Goal, plant: Plant) -> Goal:
     return goal
 
 
-def _cascades(
-    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None]
-) -> list[Judged]:
+def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None]) -> list[Judged]:
     """Return the best cascade of each encoder that the controller sees, the better one first.
 
     Raises:
         ValueError: no run under the better one came to its end
     """
     encoders = ("input", "output") if encoder == "output" else ("input",)
-    found = [best_cascade(plant, goal, draws, each, progress) for each in encoders]
+    found = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
     found.sort(key=lambda each: each.upper(goal.judged_by))
     best = found[0]
     if best.failures == len(best.figures[goal.judged_by]):
@@ -287,12 +287,12 @@ def _advice(best: Judged, goal: Goal, plant: Plant) -> str:
 
 
 def _judged_candidates(
-    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], progress: Callable[[str], None]
+    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], turn: Callable[[str], None]
 ) -> list[Judged]:
     """Return all compensations of these cascades, best first."""
     others = []
     for candidate in candidates(plant, [each.candidate.setting for each in cascades], goal, draws):
-        progress(candidate.name)
+        turn(candidate.name)
         others.append(judged(candidate, goal, draws, plant))
     return sorted(others, key=lambda each: each.median(goal.judged_by))
 
@@ -333,7 +333,7 @@ def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
 
 
 def best_cascade(
-    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None] = lambda stage: None
+    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None] = lambda name: None
 ) -> Judged:
     """Return the cascade of which 95 % of the drawn gears stay below the least, of all settings of an encoder."""
     tried = []
@@ -341,7 +341,7 @@ def best_cascade(
         largest = sharpest(plant, encoder, observer_share)
         for share in SHARPNESS_SHARES:
             setting = replace(largest, sharpness=share * largest.sharpness)
-            progress(f"cascade, {encoder} encoder, sharpness {setting.sharpness:.2g}, observer {observer_share:g}")
+            turn(f"cascade, {encoder} encoder, sharpness {setting.sharpness:.2g}, observer {observer_share:g}")
             tried.append(judged(baseline(plant, setting), goal, draws, plant))
     return min(tried, key=lambda found: found.upper(goal.judged_by))
 

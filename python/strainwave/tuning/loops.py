@@ -49,7 +49,7 @@ class Margins(ComparedByFields, Presented):
 
     >>> import strainwave as sw
     >>> law = sw.control.PositionSpeed(position_gain=50.0, speed_proportional=3.0, speed_integral=150.0)
-    >>> margins = sw.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    >>> margins = sw.tuning.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
     >>> round(margins.position.gain, 1), round(margins.position.crossover)  # factor; rad/s
     (4.5, 60)
     """
@@ -84,7 +84,7 @@ class LoopMargins(Pictured):
     >>> import numpy as np
     >>> import strainwave as sw
     >>> law = sw.control.PositionSpeed(position_gain=50.0, speed_proportional=3.0, speed_integral=150.0)
-    >>> margins = sw.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    >>> margins = sw.tuning.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
     >>> round(float(np.degrees(margins.speed.phase))), round(margins.speed.crossover), round(margins.modulus, 2)
     (57, 1076, 0.51)
     """
@@ -103,7 +103,7 @@ class LoopMargins(Pictured):
         >>> import strainwave as sw
         >>> law = sw.cascade("robot-joint", period=1e-3)
         >>> drive = sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3))
-        >>> [axes.get_title(loc="left") for axes in sw.loop_margins(drive).plot().axes]
+        >>> [axes.get_title(loc="left") for axes in sw.tuning.loop_margins(drive).plot().axes]
         ['magnitude', 'phase [°]']
         """
         from strainwave.tuning.loops_plot import margins_figure

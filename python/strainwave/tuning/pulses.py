@@ -56,7 +56,7 @@ def pulse_travel(torque: float, width: float, inertia: float, friction: float) -
         ValueError: a number is out of its range
 
     Source:
-        document P, "pulse" command of the experiments; own derivation
+        the position control article, "pulse" command of the experiments; own derivation
 
     >>> round(pulse_travel(torque=0.15, width=0.02, inertia=1.2e-3, friction=0.072), 6)
     0.027083
@@ -114,7 +114,7 @@ class PulsePlan(Pictured):
         actuation_per_torque: what the motor takes per torque: [A/(N.m)] or [1]
 
     >>> import strainwave as sw
-    >>> plan = sw.plan_pulses("position-drive", 0.005)
+    >>> plan = sw.tuning.plan_pulses("position-drive", 0.005)
     >>> [round(1e3 * width) for width in plan.widths], round(plan.torque, 3), round(plan.friction, 3)  # ms, N.m, N.m
     ([95], 0.153, 0.074)
     """
@@ -201,7 +201,7 @@ def plan_pulses(
             nor a voltage, or its friction does not hold it at rest
 
     Source:
-        document P, experiments (pulse control); own derivation
+        the position control article, experiments (pulse control); own derivation
 
     >>> plan = plan_pulses("position-drive", 0.002)
     >>> len(plan.widths), round(1e3 * plan.widths[0])  # ms
@@ -248,7 +248,7 @@ class PulsedMove(Pictured):
         end: state at the end, from which another move can start
 
     >>> import strainwave as sw
-    >>> move = sw.position_by_pulses(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4)
+    >>> move = sw.tuning.position_by_pulses(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, (1e3 * move.angles).round(2)  # mrad of the output: at the start, and after each pulse
     (True, array([0.  , 2.55, 5.03]))
     """
@@ -299,7 +299,7 @@ def position_by_pulses(
     *,
     measured: bool = True,
     max_pulses: int = DEFAULT_MAX_PULSES,
-    start: State | None = None,
+    initial: State | None = None,
     drive: Drive | None = None,
 ) -> PulsedMove:
     r"""Return the simulated move of a drive by pulses: the output measured at rest between them, or the train as planned.
@@ -321,7 +321,7 @@ def position_by_pulses(
         tolerance: of the output at rest [rad]
         measured: False for the train of the plan, without correction
         max_pulses: number of measured pulses after which the move ends, reached or not
-        start: where the drive starts, as `end` of another move; untwisted at rest if not given
+        initial: where the drive begins, as `end` of another move; untwisted at rest if not given
         drive: that is moved in truth, with parts of the same models as `plan.drive`, which it is if not given
 
     Returns:
@@ -332,7 +332,7 @@ def position_by_pulses(
         ValueError: a number is out of its range, or the drive does not come to rest after a pulse
 
     Source:
-        document P, experiments (pulse control); the correction: own derivation
+        the position control article, experiments (pulse control); the correction: own derivation
 
     >>> move = position_by_pulses(plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, move.pulses < 6
@@ -341,7 +341,7 @@ def position_by_pulses(
     tolerance = arguments.number("tolerance", tolerance, "rad", low=0.0)
     arguments.whole("max_pulses", max_pulses, 1)
     moved_drive = plan.drive if drive is None else arguments.drive(drive)
-    rest = _Resting(plan, moved_drive, moved_drive.rest() if start is None else start, MAX_DRIFT * tolerance)
+    rest = _Resting(plan, moved_drive, moved_drive.rest() if initial is None else initial, MAX_DRIFT * tolerance)
     widths = _corrected(plan, rest, tolerance, max_pulses) if measured else _as_planned(plan, rest)
     return PulsedMove(plan.travel, tolerance, np.array(widths), np.array(rest.angles), rest.state)
 
@@ -382,7 +382,7 @@ class _Resting:
         """Give one pulse of a width [s], wait for rest, and return the travels of input, over the ratio, and output [rad]."""
         command, moved = self.plan.pulses([width], sense), np.zeros(2)
         for _ in range(MAX_RESTS):
-            run = simulate(self.drive, command, MAX_STEP, sample=0.1 * self.plan.rest, start=self.state,
+            run = simulate(self.drive, command, MAX_STEP, sample=0.1 * self.plan.rest, initial=self.state,
                            record=["input_angle", "output_angle"])  # fmt: skip
             self.state = run.end
             angles = np.array([run["input_angle"] / self.drive.gear.kinematics.ratio, run["output_angle"]])
@@ -409,7 +409,7 @@ class PulseRepeatability(Pictured):
         reached: share of the drives whose error is within the tolerance
 
     >>> import strainwave as sw
-    >>> found = sw.pulse_repeatability(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
+    >>> found = sw.tuning.pulse_repeatability(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
     >>> found.pulses, (1e3 * found.errors).round(2)  # mrad of the output
     (array([2, 4, 2, 4, 2]), array([ 0.04,  0.1 , -0.06, -0.07,  0.03]))
     """

@@ -18,8 +18,7 @@ from strainwave.identification.excitation.design import Criterion, best, covaria
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
-from strainwave.parameters import Parameter, every
-from strainwave.parameters import parameters as chosen
+from strainwave.parameters import Parameter, every, parameters as chosen
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs

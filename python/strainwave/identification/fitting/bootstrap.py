@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
 from strainwave.presentation import DIGITS, Pictured, Row
+from strainwave.progress import Progress, by_count
 from strainwave.statistics.residuals import correlation_length
 
 if TYPE_CHECKING:
@@ -81,9 +82,7 @@ class Bootstrap(ComparedByFields, Pictured):
         return histograms_figure(f"Estimates of {len(self.values)} draws", drawn)
 
 
-def bootstrap(
-    found: Fit, draws: int = 200, *, seed: int = 0, progress: Callable[[int, int], None] = lambda done, draws: None
-) -> Bootstrap:
+def bootstrap(found: Fit, draws: int = 200, *, seed: int = 0, progress: Progress = None) -> Bootstrap:
     """Return fits to resampled measurements: the prediction of the model, and blocks of its residuals in another order.
 
     Blocks are several correlation lengths long, and channels of a record keep their instants, so that noise correlates as
@@ -94,7 +93,7 @@ def bootstrap(
         found: result of `fit`
         draws: count of fits, 20 or more; each starts where `found` ended
         seed: of the random numbers
-        progress: is called with the count of draws done, and of all
+        progress: as of `sw.simulate`
 
     Returns:
         The estimates of each draw that could be fitted, shape (draws, p), in the order and units of `found.estimates`.
@@ -128,14 +127,16 @@ def bootstrap(
     ]
     predicted = [each for each, _ in problem.predict(best)]
     values = []
-    for draw in range(draws):
-        for record, model, each, length in zip(problem.records, predicted, left, lengths, strict=True):
-            record.measured = model.copy()
-            record.measured[:, record.training] += grown * _resampled(each, length, random)
-        problem.draw_priors(random)
-        with suppress(ValueError, FloatingPointError):
-            values.append(problem.solve(best, weights, REFIT_TOLERANCE))
-        progress(draw + 1, draws)
+    with by_count(progress, "drawing measurements anew", draws) as done:
+        for draw in range(1, draws + 1):
+            for record, model, each, length in zip(problem.records, predicted, left, lengths, strict=True):
+                record.measured = model.copy()
+                record.measured[:, record.training] += grown * _resampled(each, length, random)
+            problem.draw_priors(random)
+            with suppress(ValueError, FloatingPointError):
+                values.append(problem.solve(best, weights, REFIT_TOLERANCE))
+            if done is not None:
+                done(draw)
     if not values:
         raise FloatingPointError(
             "no resampled measurement could be fitted: the model diverges near its estimates; bound the parameters, or fix some"

@@ -41,7 +41,7 @@ class Combination(ComparedByFields, Statement):
     >>> run = sw.simulate(drive, voltage, sample=1e-2, record=["command", "input_angle"])
     >>> noise = 1e-2 * np.random.default_rng(0).normal(size=len(run))
     >>> log = run.with_column("input_angle", run["input_angle"] + noise, "rad")
-    >>> (combination,) = sw.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
+    >>> (combination,) = sw.identification.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
     >>> combination.formula, round(1e6 * combination.value), round(1e6 * combination.sigma, 2)  # 1e-6 kg.m2
     ('motor.inertia + 0.0001 load.inertia', 20, 0.04)
     """

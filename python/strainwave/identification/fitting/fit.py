@@ -180,7 +180,7 @@ class Fit(ComparedByFields, Pictured):
             if share > MAX_SYMMETRIC_SIGMA:
                 yield (
                     f"{estimate.path} is known to {100.0 * share:.0f} % only: its interval is not symmetric; "
-                    f'sw.profile(fit, "{estimate.path}") gives it'
+                    f'sw.identification.profile(fit, "{estimate.path}") gives it'
                 )
 
     def _correlated(self) -> Iterator[str]:
@@ -192,7 +192,8 @@ class Fit(ComparedByFields, Pictured):
                 if length > 1.0:
                     yield (
                         f"the residuals of {name}{of} correlate over {length:.2g} samples: the sensor drifts, the model "
-                        "lacks something, or the fit ended at the wrong minimum; look at the residuals, and try sw.minima(fit)"
+                        "lacks something, or the fit ended at the wrong minimum; look at the residuals, and "
+                        "try sw.identification.minima(fit)"
                     )
 
     def plot(self, record: str | None = None) -> Figure:

@@ -60,7 +60,7 @@ class Minima(ComparedByFields, Pictured):
     >>> speed = np.linspace(1.0, 50.0, 60)
     >>> torque = law.steady(speed) + 1e-4 * np.random.default_rng(0).normal(size=60)
     >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
-    >>> found = sw.minima(sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb"]), starts=3)
+    >>> found = sw.identification.minima(sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb"]), starts=3)
     >>> len(found.ends), found.ends[0].starts, found.rivals, found.lower
     (1, 4, (), False)
     """

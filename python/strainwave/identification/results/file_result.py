@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
-Look = Literal["table", "loop", "series", "means"]
+Look = Literal["table", "loop", "series", "means", "turn"]
+Subject = Literal["torque", "friction", "twist", "error", ""]
+UNITS_OF_EFFORT = ("N.m", "A", "V")
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
@@ -124,6 +126,7 @@ class Picture(ComparedByFields):
         label: of the channel in words; its name if not given
         title: of the picture, if a file has several
         model: in words, if it is not that of the file
+        orders: of an error over a turn, each with its amplitude and the standard deviation of that
     """
 
     curves: Recording
@@ -131,6 +134,18 @@ class Picture(ComparedByFields):
     label: str = ""
     title: str = ""
     model: str = ""
+    orders: tuple[tuple[float, float, float], ...] = ()
+
+    @property
+    def subject(self) -> Subject:
+        """What an engineer looks for in it: torque over time, friction over speed, twist over torque, error over a turn."""
+        if self.look == "turn":
+            return "error"
+        if self.look == "loop":
+            return "twist" if "twist" in self.curves else ""
+        if self.look == "table":
+            return "friction"
+        return "torque" if self.look == "series" and self.curves.unit(self.curves.names[1]) in UNITS_OF_EFFORT else ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +170,7 @@ class FileResult(ComparedByFields, Pictured):
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
         bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
         between: the fit of the gear between both encoders; None without one
+        unchecked: numbers of the drive with which its estimates scale, and that nothing in it checks: their values, by name
     """
 
     name: str
@@ -174,6 +190,7 @@ class FileResult(ComparedByFields, Pictured):
     fit: Fit | None = None
     bend: float = 0.0
     between: Fit | None = None
+    unchecked: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def fits(self) -> tuple[Fit, ...]:

@@ -9,11 +9,28 @@ import numpy as np
 
 from strainwave import typeset
 from strainwave.presentation import Presented, Row
+from strainwave.typeset import percent, quantity
 
 MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
 MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
 MAX_IN_BAND = 0.01  # of what varies in the pass band
+
+
+def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
+    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of what varies.
+
+    Args:
+        error: root mean square of measured less predicted
+        unit: of all
+        varies: root mean square of the signal about its mean; not positive if it does not vary
+        plain: what plain least squares leaves; not a number without
+
+    >>> error_in_words(0.147, "A", 1.79, 0.185), error_in_words(8.3e-3, "N.m", 0.054)
+    ('0.147 A (plain least squares 0.185 A), 8.2 % of what varies', '8.3 mN·m, 15 % of what varies')
+    """
+    beside = f" (plain least squares {quantity(plain, unit)})" if np.isfinite(plain) else ""
+    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of what varies' if varies > 0.0 else ''}"
 
 
 @dataclass(frozen=True)
@@ -41,6 +58,11 @@ class HeldOut(Presented):
     plain: float = np.nan
     samples: int = 0
     in_band: float = np.nan
+
+    @property
+    def words(self) -> str:
+        """The error in words, as `error_in_words`."""
+        return error_in_words(self.error, self.unit, self.zero, self.plain)
 
     @property
     def relative(self) -> float:

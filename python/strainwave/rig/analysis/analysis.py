@@ -59,7 +59,7 @@ class LoopAnalysis(ComparedByFields, Pictured):
         loop: as it was measured; of a very long one, the means of short stretches
         cut: its branches and regimes
         stiffnesses: of each regime that was measured from zero torque to the peak, in the order of the cycle
-        hysteresis: widest separation at equal torque, as document T has it
+        hysteresis: widest separation at equal torque, as the torsional stiffness article has it
         width_at_zero: separation at zero torque after the peaks of this cycle [rad]
         rated_torque: of the gear, at the loaded shaft [N.m]
         hysteresis_loss: separation at zero torque after rated torque, as catalogues have it [rad]
@@ -136,7 +136,7 @@ class LoopAnalysis(ComparedByFields, Pictured):
 
 @dataclass(frozen=True)
 class LoopSummary(Presented):
-    """A row in the form of document T's Table 2.
+    """A row in the form of the torsional stiffness article's Table 2.
 
     Attributes:
         position: of the flexspline in its mount [rad]
@@ -361,10 +361,10 @@ def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
 
 
 def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[LoopSummary, ...]:
-    """Return rows in the form of document T's Table 2, one for each loop.
+    """Return rows in the form of the torsional stiffness article's Table 2, one for each loop.
 
-    T's table is one of slopes of the softest stretch: under this reading its loops close (erratum E-T4). Where a regime is one
-    straight line, all three definitions agree.
+    The article's table is one of slopes of the softest stretch: under this reading its loops close (its erratum 4). Where a
+    regime is one straight line, all three definitions agree.
 
     Args:
         analyses: of the loops, in the order of the rows

@@ -75,7 +75,7 @@ class Cycle(ComparedByFields, Presented):
 
     @property
     def width(self) -> float:
-        """Widest separation at equal torque [rad]: document T's hysteresis."""
+        """Widest separation at equal torque [rad]: the torsional stiffness article's hysteresis."""
         return float(self._separations().max())
 
     @property

@@ -51,7 +51,7 @@ class Circle(ComparedByFields, Presented):
 
 
 def kasa(x: Series, y: Series) -> Circle:
-    """Return Kåsa's circle, which document T uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
+    """Return Kåsa's circle, which the torsional stiffness article uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
 
     Args:
         x, y: of the points, three or more, not all on a line

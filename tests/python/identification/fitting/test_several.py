@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave.files.entries import Entry, Quantity
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -49,11 +48,11 @@ def log(load: float, seed: int = 0) -> sw.Recording:
     return sw.Recording(columns, {name: run.unit(name) for name in run.names})
 
 
-def values(found: sw.Fit) -> dict[str, float]:
+def values(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.value for each in found.estimates}
 
 
-def sigmas(found: sw.Fit) -> dict[str, float]:
+def sigmas(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.sigma for each in found.estimates}
 
 
