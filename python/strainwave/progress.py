@@ -4,7 +4,7 @@ Every long call takes `progress`: None shows a bar on a terminal once the call h
 False shows nothing, and a function is called with what is worked on and with the share of the whole that is done.
 
 >>> told = []
->>> with counted(lambda stage, share: told.append((stage, share)), "simulating", 4) as done:
+>>> with by_count(lambda stage, share: told.append((stage, share)), "simulating", 4) as done:
 ...     for step in range(5):
 ...         done(step)
 >>> told[-2:]
@@ -32,7 +32,7 @@ _shown = Lock()  # of the one bar that a terminal has: calls within a call show 
 
 
 @contextmanager
-def counted(progress: Progress, stage: str, total: int) -> Iterator[Callable[[int], None] | None]:
+def by_count(progress: Progress, stage: str, total: int) -> Iterator[Callable[[int], None] | None]:
     """Yield a function to call with how many of `total` are done; None if nobody watches."""
     with _told(progress) as tell:
         yield None if tell is None else lambda done: tell(stage, done / max(total, 1))

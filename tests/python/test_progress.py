@@ -12,12 +12,12 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from strainwave.progress import counted, in_turn
+from strainwave.progress import by_count, in_turn
 
 LOOP = """
 import time
-from strainwave.progress import counted
-with counted({}, "turning the [red]gear[/]", 30) as done:
+from strainwave.progress import by_count
+with by_count({}, "turning the [red]gear[/]", 30) as done:
     for step in range(30):
         if done is not None:
             done(step)
@@ -53,7 +53,7 @@ def test_a_bar_appears_on_a_terminal_after_a_second_by_default() -> None:
 
 
 def test_nothing_is_shown_where_nobody_watches(capfd: pytest.CaptureFixture[str]) -> None:
-    with counted(None, "simulating", 2) as done, in_turn(None) as turn:
+    with by_count(None, "simulating", 2) as done, in_turn(None) as turn:
         assert done is None
         turn("one.csv")
     assert capfd.readouterr() == ("", "")
@@ -62,7 +62,7 @@ def test_nothing_is_shown_where_nobody_watches(capfd: pytest.CaptureFixture[str]
 def test_a_call_within_a_call_has_no_bar_of_its_own(capfd: pytest.CaptureFixture[str]) -> None:
     with in_turn(True) as turn:
         turn("outer")
-        with counted(True, "inner", 2) as done:
+        with by_count(True, "inner", 2) as done:
             assert done is None
     other = Thread(target=lambda: seen.append(_is_shown()))
     seen: list[bool] = []
@@ -73,7 +73,7 @@ def test_a_call_within_a_call_has_no_bar_of_its_own(capfd: pytest.CaptureFixture
 
 
 def _is_shown() -> bool:
-    with counted(True, "simulating", 2) as done:
+    with by_count(True, "simulating", 2) as done:
         return done is not None
 
 

@@ -75,7 +75,7 @@ def plan(
         noise=_numbers("noise", "friction=0.002", noise or []),
         resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
-    print(found.summary())
+    print(found)
 
 
 def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 rig = typer.Typer(cls=Verbs, help="Plan, make and analyse tests of torsional stiffness.")
 
-DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
+ARTICLE = "torsional-stiffness-article"  # the gears of the torsional stiffness article's Table 2, as `gear_named` knows them
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
@@ -76,7 +76,8 @@ def plan_command(
 ) -> None:
     """Print what to lay on the pans and take off, step by step.
 
-    The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
+    The cycle is the torsional stiffness article's: the positive peak, down to zero, to the negative peak, back to zero, and up
+    to the positive peak.
 
     Examples:
         strainwave rig plan --torque 0.3 --positions 0
@@ -98,8 +99,9 @@ def plan_command(
 @with_groups
 def simulate(
     gear: Annotated[
-        str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
-    ] = DOCUMENT_T,
+        str,
+        typer.Argument(help="A set by name, a gear file, or torsional-stiffness-article: the gears of its Table 2."),
+    ] = ARTICLE,
     name: RigOption = "couple-rig",
     out: Annotated[Path, folder("Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
     options: PlanOptions = USUAL_PLAN,
@@ -127,7 +129,7 @@ def simulate(
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     if abs(made.peak - options.torque) > 1e-9 * options.torque:
         print(f"the peak is {made.peak:.4f} N.m: {options.torque:g} N.m is no step of the masses")
-    if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
+    if gear == ARTICLE and (short := narrower(sorted({each.position for each in steps}), made.peak)):
         print(*short, sep="\n")
         print("more torque, or --unequal, which halves the steps, may reach it")
     print(f"to analyse it: strainwave rig analyse {out}")
@@ -144,7 +146,7 @@ def measure(
         str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
     ] = None,
     options: PlanOptions = USUAL_PLAN,
-    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
+    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = ARTICLE,
     pictures: Annotated[int, whole("Photographs in a row that must agree before a step counts as at rest.")] = 5,
     interval: Annotated[float, numeric("Time between two photographs in s.")] = 0.5,
     patience: Annotated[float, numeric("Time in s after which a shaft that still moves is reported.")] = 60.0,
@@ -218,9 +220,9 @@ def analyse(
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
-    from strainwave.report.results_json import results_json
-    from strainwave.report.rig import rig_report, summary
-    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
+    from strainwave.report.files_of import evaluation_files
+    from strainwave.report.rig import summary
+    from strainwave.report.rig_files import loop_names
     from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
@@ -236,10 +238,7 @@ def analyse(
         units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
     )
     found, read = evaluate_paths(paths, given)
-    provenance = _provenance(read)
-    files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-    files["results.json"] = results_json(results(found, provenance.date))
-    files["report.html"] = rig_report(found, provenance, list(files))
+    files = evaluation_files(found, _provenance(read))
     write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
@@ -363,7 +362,7 @@ def _rig(name: str) -> Rig:
 
 
 def _rig_of_test(folder: Path, name: str | None) -> Rig:
-    """The rig that was named, or that of the folder, or the one of document T."""
+    """The rig that was named, or that of the folder, or the one of the torsional stiffness article."""
     from strainwave.files.folder import inside
 
     there = inside(folder, "rig.toml")

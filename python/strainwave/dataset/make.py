@@ -18,6 +18,7 @@ from strainwave.dataset.shards import Shards, write_table
 from strainwave.files.writing import claiming, making, replacing
 from strainwave.messages import one_line
 from strainwave.native import kernels
+from strainwave.presentation import Presented
 from strainwave.progress import Progress, in_turn
 from strainwave.simulation.threads import available_threads
 
@@ -31,7 +32,7 @@ Runner = Literal["local", "dask", "slurm"]
 
 
 @dataclass(frozen=True)
-class CostEstimate:
+class CostEstimate(Presented):
     """Time and size of a data set, estimated from a pilot of some members.
 
     Args:

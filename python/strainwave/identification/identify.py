@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -40,6 +40,7 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.presentation import Pictured, Reported, Row, counted
 from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 from strainwave.simulation.threads import one_thread_of_algebra
@@ -51,7 +52,7 @@ Mapped: TypeAlias = Callable[[Path], FileMapping] | FileMapping | None
 
 
 @dataclass(frozen=True, eq=False)
-class Identified(ComparedByFields):
+class Identified(ComparedByFields, Pictured, Reported):
     """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
@@ -117,6 +118,23 @@ class Identified(ComparedByFields):
         from strainwave.identification.results.comparison_plot import over_start_figure
 
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
+
+    def _headline(self) -> str:
+        checks = counted(len(self.checks), "check")
+        verdict = f"{len(self.failed)} of {checks} FAILED" if self.failed else f"{checks} passed"
+        refused = sum(bool(each.refused) for each in self.files)
+        files = counted(len(self.files), "file") + (f", {refused} refused" if refused else "")
+        return f"{self.gear_set.name}, {counted(len(self.parameters), 'parameter')} from {files}, {verdict}"
+
+    def _rows(self) -> Iterator[Row]:
+        for each in self.parameters:
+            taken = each.estimate
+            yield Row(taken.label, taken.value, taken.unit, taken.sigma, each.taken_from)
+        for file in self.files:
+            yield Row(file.name, file._headline())
+
+    def _remarks(self) -> Iterator[str]:
+        return (f"FAILED: {check.source}: {check.message}; {check.remedy}" for check in self.failed)
 
 
 def identify(

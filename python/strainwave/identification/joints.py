@@ -12,6 +12,7 @@ from strainwave.identification.identify import Identified, check_arguments, iden
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.presentation import Presented, Reported, counted
 from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 
@@ -21,7 +22,7 @@ MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids ha
 
 
 @dataclass(frozen=True)
-class Joints:
+class Joints(Presented, Reported):
     """Result of `identify_joints`: the gear of each joint of an arm.
 
     Attributes:
@@ -33,6 +34,10 @@ class Joints:
     found: Mapping[str, Identified]
     refused: Mapping[str, str]
     left_out: Mapping[str, str]
+
+    def _headline(self) -> str:
+        refused = f", {len(self.refused)} refused" if self.refused else ""
+        return f"{counted(len(self.found), 'joint')}{refused}"
 
 
 def identify_joints(

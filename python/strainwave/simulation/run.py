@@ -15,7 +15,7 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import GENERATED_TITLE, Recording
 from strainwave.messages import listed
 from strainwave.native import kernels
-from strainwave.progress import Progress, counted
+from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Initial, beginning_numbers, known
@@ -188,7 +188,7 @@ def simulate(
         course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
     outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
-    with kernels.prepared(drive, "simulate", steps), counted(progress, "simulating", steps) as shown:
+    with kernels.prepared(drive, "simulate", steps), by_count(progress, "simulating", steps) as shown:
         for number, (instants, keep) in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, steps_by = excitation.over(instants), _core.Method[taken]
@@ -361,7 +361,7 @@ def simulate_adaptively(
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))
     kernels.prepare(drive, "simulate_adaptively", len(ends))
-    with counted(progress, "simulating", len(ends) - 1) as shown:
+    with by_count(progress, "simulating", len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, arguments, loads
+from strainwave import Drive, arguments, loads, typeset
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
+from strainwave.presentation import Pictured, Reported, Row
 from strainwave.progress import Progress, in_turn
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
@@ -23,6 +24,9 @@ from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.judging import AT_LIMIT, Judged, judged
 from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, Loops, margins_of, sharpest
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -49,7 +53,7 @@ MEASUREMENTS = {
 
 
 @dataclass(frozen=True)
-class Compensated:
+class Compensated(Pictured, Reported):
     """Result of `compensate`: the drive with its controller, and the figures of every candidate.
 
     Attributes:
@@ -108,6 +112,44 @@ class Compensated:
         """Return the controller with the model of these effects alone, in the cascade of a setting; None if none was tried."""
         alike = (each for each in self.tried if each.candidate.is_plain and each.candidate.setting == setting)
         return next((each for each in alike if each.candidate.effects == effects), None)
+
+    @property
+    def verdict(self) -> str:
+        """What the compensation gains over the baseline, in one sentence."""
+        figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
+        before = typeset.quantity(self.baseline.median(figure), unit)
+        after = typeset.quantity(self.chosen.median(figure), unit)
+        if not self.is_compensated:
+            cascade = f"the {self.baseline.candidate.name}, whose {figure} is {before}"
+            return (
+                f"{self.gear_set.name}: no compensation gains over {cascade} in the median of {self.members} gears drawn anew."
+            )
+        return (
+            f"{self.gear_set.name}: {self.chosen.candidate.name} brings the {figure} from {before} to {after} "
+            f"(−{100.0 * self.gain:.0f} %), in the median of {self.members} gears drawn anew."
+        )
+
+    def _headline(self) -> str:
+        return self.verdict
+
+    def _rows(self) -> Iterator[Row]:
+        figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
+        yield Row(f"{figure} of the cascade", self.baseline.median(figure), unit, note="median of the gears drawn")
+        yield Row(f"{figure} with the controller", self.chosen.median(figure), unit, note="median")
+        yield Row("and in 95 % of the gears below", self.chosen.upper(figure), unit)
+        yield Row("controller", self.chosen.candidate.name)
+        yield from self.margins._rows()
+        for tried in self.tried:
+            yield Row(tried.candidate.name, tried.median(figure), unit, note="median, when it was chosen")
+
+    def plot(self) -> Figure:
+        """Return a figure of the error of the output over time: of the cascade, and of the controller chosen."""
+        from strainwave.drawing import marks
+        from strainwave.tuning.pictures import draw_errors
+
+        with marks.new_figure(3.2, f"Error of {self.gear_set.name}") as figure:
+            draw_errors(figure, self)
+        return figure
 
 
 def compensate(

@@ -49,7 +49,7 @@ def test_help_fits_80_columns_and_cuts_nothing(name: str, tmp_path: Path, monkey
     monkeypatch.setenv("COLUMNS", "80")
     short, long = (strainwave(*name.split(), option, folder=tmp_path).stdout for option in ("-h", "--help"))
     assert short == long != ""
-    assert [line for line in long.splitlines() if len(line) > 80 or line.endswith("...") and "Usage" not in line] == []
+    assert [line for line in long.splitlines() if len(line) > 80 or (line.endswith("...") and "Usage" not in line)] == []
     for line in examples(VERBS[tuple(name.split())]) if name else []:
         assert shlex.split(line)[: 1 + len(name.split())] == ["strainwave", *name.split()], "an example of another verb"
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.folder import inside
 from strainwave.messages import listed, one_line, quoted
+from strainwave.presentation import Presented
 from strainwave.progress import Progress, in_turn
 from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.bench.rig_file import load
@@ -47,7 +48,7 @@ class AngleReading(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TorsionTest(ComparedByFields):
+class TorsionTest(ComparedByFields, Presented):
     """A torsion test as read from its files.
 
     Attributes:
@@ -81,10 +82,8 @@ class TorsionTest(ComparedByFields):
     remarks: tuple[str, ...]
     deviations: tuple[str, ...] | None = None
 
-    def __repr__(self) -> str:
-        """Return the counts: the markers of all photographs would fill pages."""
-        counts = f"{len(self.steps)} steps, {len(self.hashes)} photographs, {len(self.loops)} loops"
-        return f"<TorsionTest in {self.folder}: {counts}>"
+    def _headline(self) -> str:
+        return f"{self.folder}, {len(self.steps)} steps, {len(self.hashes)} photographs, {len(self.loops)} loops"
 
 
 def read_test(
@@ -98,8 +97,8 @@ def read_test(
     """Read the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). The remarks list each photograph without an angle; the other steps remain. If the folder contains the
-    planned steps, `plan.csv`, the record is compared with them.
+    erratum 11 of the torsional stiffness article). The remarks list each photograph without an angle; the other steps remain.
+    If the folder contains the planned steps, `plan.csv`, the record is compared with them.
 
     Args:
         folder: of the test

@@ -19,7 +19,8 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import save
 from strainwave.files.writing import making, replacing
-from strainwave.progress import Progress, counted
+from strainwave.presentation import Presented
+from strainwave.progress import Progress, by_count
 from strainwave.rig.bench.rig_file import write_rig
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
@@ -45,7 +46,7 @@ COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class VirtualTest(ComparedByFields):
+class VirtualTest(ComparedByFields, Presented):
     """A virtual test and its truth: the recorded steps, and the true values of each, shape (n,).
 
     Attributes:
@@ -183,7 +184,7 @@ def _write(
     for number, each in enumerate(gears, 1):
         save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
     _write_truth(test, scene, seed, faults)
-    with counted(progress, "drawing pictures", len(recorded)) as report:
+    with by_count(progress, "drawing pictures", len(recorded)) as report:
         for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
             fault = faults.get(step.number)
             if fault != "skipped":
