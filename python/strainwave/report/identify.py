@@ -12,6 +12,7 @@ import numpy as np
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import AGREEMENT
+from strainwave.identification.checks.shape import has_small_shape
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
@@ -25,6 +26,7 @@ from strainwave.identification.results.combined_parameter import (
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
+from strainwave.messages import listed
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows
 from strainwave.report.first_screen import next_commands, not_determined, numbers_by_source, pictures
@@ -100,6 +102,8 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
+    if shapes := [quantity(check.value, check.unit) for check in found.checks if has_small_shape(check)]:
+        parts.append(f"what the model leaves has a shape of RMS {listed(shapes)}")
     sentence = "; ".join(parts)
     return f"{sentence[0].upper()}{sentence[1:]}.".replace(" %", f"{NO_BREAK_SPACE}%")
 
