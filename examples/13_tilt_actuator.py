@@ -32,11 +32,11 @@ for name, run in reversed(runs.items()):
     current.plot(run.time, run["current"], linewidth=0.9, label=name)
     last = run.between(5.0 - 5.0 * turn, 5.0)
     orders = np.arange(1.0, 13.0)
-    rippled = sw.order_amplitudes(last, "current", orders).amplitude
+    rippled = sw.orders.order_amplitudes(last, "current", orders).amplitude
     spectra.bar(orders + 0.25 * len(found) - 0.25, 1e3 * rippled, width=0.25, label=name)  # side by side
     later = run.time > 0.5
     found[name] = {
-        "error": sw.order_amplitudes(last, "kinematic_error", [2.0]).amplitude[0],
+        "error": sw.orders.order_amplitudes(last, "kinematic_error", [2.0]).amplitude[0],
         "current": rippled[1],
         "peak": run["torque"][later].max() / straight["torque"][later].max(),
         "load": last["torque"].mean(),

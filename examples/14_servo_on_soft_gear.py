@@ -1,4 +1,4 @@
-"""A servo on the soft gear of the torsional stiffness article: limit cycle and bandwidth over amplitude.
+"""A servo on a soft gear: limit cycle and bandwidth over amplitude.
 
 The torsional stiffness article warns that low stiffness at a reversal of the torque may bring "instability, limit cycling, or
 reduced bandwidth". Here its gear, as the loop of Table 2 has it, carries an arm, and the position loop is closed on the arm.
@@ -54,7 +54,7 @@ swings = {name: np.array([each[1:] for each in found]) for name, found in runs.i
 foretold = fsolve(balance, [0.5, 9.0])
 slower = drive.replace({"control.position_gain": 15.0})
 frequency = np.geomspace(0.5, 8.0, 13)
-answers = {size: sw.frequency_response(slower, frequency, np.radians(size), dt=1e-3) for size in (0.1, 0.5, 1.0, 4.0)}
+answers = {size: sw.analysis.frequency_response(slower, frequency, np.radians(size), dt=1e-3) for size in (0.1, 0.5, 1.0, 4.0)}
 
 figure = Figure(figsize=(8.0, 8.5), layout="constrained")
 time, over, bode = figure.subplots(3, 1)

@@ -13,11 +13,13 @@ import strainwave as sw
 from matplotlib.figure import Figure
 
 travel, tolerance = 1e-3, 1e-4  # rad of the output
-plan = sw.plan_pulses("position-drive", travel)
-width = sw.pulse_width(abs(plan.torque), 0.05, plan.inertia, plan.friction)
+plan = sw.tuning.plan_pulses("position-drive", travel)
+width = sw.tuning.pulse_width(abs(plan.torque), 0.05, plan.inertia, plan.friction)
 run = sw.simulate(plan.drive, plan.pulses([width]), record=["input_angle"])
 print(f"a pulse of {1e3 * width:.1f} ms for 0.05 rad of the motor moves it by {run['input_angle'][-1]:.4f} rad")
-spreads = {name: sw.pulse_repeatability(plan, tolerance, measured=name == "measured") for name in ("planned", "measured")}
+spreads = {
+    name: sw.tuning.pulse_repeatability(plan, tolerance, measured=name == "measured") for name in ("planned", "measured")
+}
 for name, found in spreads.items():
     errors = f"error {1e6 * found.median_error:.0f} urad, 95 % within {1e6 * found.upper_error:.0f} urad"
     pulses = f"{found.median_pulses:.0f} pulses, 95 % with {found.upper_pulses:.0f} or fewer"
@@ -32,10 +34,10 @@ targets = np.radians([0.0, 3.0, 6.0, 3.0])  # the second from below, the last fr
 paths, apart = {}, {}
 for name, gear, inertia in (("the article's gear", soft, 0.5), ("CSG-20-100", stiff, 0.05)):
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), control=loop, load=sw.loads.Inertia(inertia=inertia))
-    lost = sw.lost_motion(gear)
+    lost = sw.tuning.lost_motion(gear)
     print(f"{name}: {np.degrees(lost.input_width):.2f} deg of the input wide, {np.degrees(lost.input_extent):.2f} deg in all")
     for way, overshoot in (("plain", 0.0), ("one side", lost.overshoot())):
-        path = sw.positioning_path(targets, overshoot, speed=0.5, acceleration=0.5)
+        path = sw.tuning.positioning_path(targets, overshoot, speed=0.5, acceleration=0.5)
         run = sw.simulate(drive, path.command, dt=5e-4, record=["output_angle", "command"])
         rest = np.interp(path.rests, run.time, run["output_angle"])
         paths[name, way], apart[name, way] = (path, run), (rest[1] - rest[3]) / lost.extent

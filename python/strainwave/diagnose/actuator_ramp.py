@@ -14,6 +14,7 @@ from strainwave.files.described import parameters, parts
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 from strainwave.simulation.ensemble import Ensemble, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.resolution import MAX_STEP_PHASE
@@ -44,7 +45,7 @@ ASSUMED_SECTION_OFFSET = 4e-3  # m, from the centre of tilt to the section, of a
 
 
 @dataclass(frozen=True)
-class ActuatorRamp:
+class ActuatorRamp(Presented):
     """A drive, a stroke and its time.
 
     Attributes:

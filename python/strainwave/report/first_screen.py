@@ -56,7 +56,7 @@ def numbers_by_source(found: Identified) -> dict[str, list[tuple[str, str]]]:
         first = next((each for each in own if each.value and each.unit != "1"), None)
         if effect not in determined and first is not None:
             words = f"{_with_spread(first, found)} {unit(first.unit)}"
-            rows.setdefault(f"from the start set {found.start.name}", []).append((name_of_path(first.path), words))
+            rows.setdefault(f"from the start set {found.start_set.name}", []).append((name_of_path(first.path), words))
     return rows
 
 
@@ -85,7 +85,7 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
     steps.append((f"Write the joint for MuJoCo and URDF{largest}", ["export", "joint", str(gear), *torque]))
     if compared is None:
         steps.append(
-            ("Compare it with a gear of the catalogue (strainwave gears lists them)", ["compare", USUAL_GEAR, str(gear)])
+            ("Compare it with a gear of the catalogue (strainwave list gears lists them)", ["compare", USUAL_GEAR, str(gear)])
         )
     return [(what, shlex.join(["strainwave", *words])) for what, words in steps]
 

@@ -104,6 +104,8 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
     if shapes := [quantity(check.value, check.unit) for check in found.checks if has_small_shape(check)]:
         parts.append(f"what the model leaves has a shape of RMS {listed(shapes)}")
+    if found.unchecked:
+        parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
     sentence = "; ".join(parts)
     return f"{sentence[0].upper()}{sentence[1:]}.".replace(" %", f"{NO_BREAK_SPACE}%")
 
@@ -202,7 +204,7 @@ def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
         "source": each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files",
         "widened": number(each.widened, 2) if each.widened > MIN_WIDENED else "",
         "shifts": ", ".join(f"{path} by {number(100.0 * by, 2)} %" for path, by in taken.shift_by_kept.items()),
-        "start": _start(found.start, taken),
+        "start": _start(found.start_set, taken),
         "others": [
             {
                 "file": name,

@@ -55,7 +55,7 @@ def identify_files(
 def _results(found: Identified) -> dict[str, Any]:
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
-        "start": found.start.name,
+        "start": found.start_set.name,
         "failed": [check.name for check in found.failed],
         "checks": [asdict(check) for check in found.checks],
         "files": [_file(each) for each in found.files],

@@ -75,7 +75,7 @@ def typed(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 
 def test_a_plan_is_printed_step_by_step_and_written(tmp_path: Path) -> None:
-    result = strainwave("rig", "plan", "--units", "A,B", "--out", "plan.csv", folder=tmp_path)
+    result = strainwave("rig", "plan", "--specimens", "A,B", "--out", "plan.csv", folder=tmp_path)
     assert result.returncode == 0
     assert "0.36 N.m is no step of these masses" in result.stdout
     assert "positive pans: lay 7 x 25 g on each" in result.stdout

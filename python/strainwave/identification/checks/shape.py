@@ -15,7 +15,7 @@ from strainwave.statistics.shape import shape
 Array = NDArray[np.float64]
 NAME = "shape of what is left"
 MAX_CHANCE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
-MAX_SHARE_OF_SHAPE = 0.25  # of what varies: twice what the models of real joints leave (13 % at most, of those that move alone)
+MAX_SHARE_OF_SHAPE = 0.25  # of what varies: models of real joints leave up to 16 %
 MIN_SHARE_OF_SHAPE = 0.01  # of what varies: a smaller one is no remark
 
 

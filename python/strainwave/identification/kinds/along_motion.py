@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,9 @@ from strainwave.identification.candidates.rotor import (
     with_rotor,
 )
 from strainwave.identification.checks.logs import (
+    CONSTANT_BY_VOLTAGE,
+    INERTIA_IN_TWO_WAYS,
+    RATIO_OF_ENCODERS,
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
@@ -29,7 +32,7 @@ from strainwave.identification.checks.logs import (
     torque_constant_by_voltage,
     unit_of_torque,
 )
-from strainwave.identification.checks.motion import checks_of_motion
+from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_motion
 from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
@@ -41,14 +44,12 @@ from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import picture_of_friction, picture_of_turn
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.determined import friction_at
+from strainwave.identification.results.determined import PATH as STEADY, friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
-from strainwave.identification.results.motor_inertia import LOAD as INERTIA
-from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
@@ -67,6 +68,10 @@ OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=NUMBER"
 )
+CHECKS_OF = {  # numbers of the drive by which estimates scale, and the checks of each
+    "ratio": {RATIO_OF_ENCODERS, RATIO_BY_ORDERS},
+    "torque constant": {CONSTANT_BY_VOLTAGE, INERTIA_IN_TWO_WAYS},
+}
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -79,7 +84,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     others = [each for each in models if each.model is not best.model]
     log = best.log
     other = _other_laws(best, others, in_current) if taken.has_friction else ()
-    of_model = [*_delay(best), *other, *_one_encoder(taken)]
+    of_model = [*_delay(best), *other]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     apart = spread_by_models(best, others)
@@ -110,7 +115,6 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best = judged
     if not in_current and taken.has_friction:
         known, estimates = _with_friction(known, best, estimates, file.path.name)
-    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
@@ -123,16 +127,26 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
     ]
-    checks += checks_of_motion(best, drive, recording, held_out, name, file.neighbours)
+    checks += checks_of_motion(best, drive, recording, held_out, file)
+    unchecked = _unchecked(taken, {check.name for check in checks})
+    of_model += _scales(unchecked)
     shaped = _shape(predicted, log, held_out, ratio, name)
-    checks, every = [*checks, *shaped.checks], (*every, *shaped.remarks)
+    checks += shaped.checks
+    every = (
+        *of_model,
+        *speed_of_another_clock(file),
+        *file.remarks,
+        *remarks,
+        *_shares(best.fit, file.regressors),
+        *shaped.remarks,
+    )
     dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
     of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
     pictures = (Picture(predicted), *of_friction, *between.pictures)
     return (
         FileResult(
             name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit, bend=best.bend, between=between.between,
+            fit=best.fit, bend=best.bend, between=between.between, unchecked=unchecked,
         ),
         known,
     )  # fmt: skip
@@ -186,15 +200,24 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
             yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
 
 
-def _one_encoder(taken: PreparedLog) -> Iterator[str]:
-    """Yield the sentence about what a record with one encoder cannot contradict."""
-    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
-    if set(ENCODERS) <= set(taken.recording.names) or taken.in_current or taken.log.effort != "current":
-        return
-    yield (
-        f"one encoder checks neither the ratio, {abs(taken.drive.gear.kinematics.ratio):.6g}, nor the torque constant, "
-        f"{constant:.4g} N·m/A: friction, inertia and gravity scale with them"
-    )
+def _unchecked(taken: PreparedLog, checks: Set[str]) -> dict[str, str]:
+    """Return ratio and torque constant of a log of current, with their values, if no check of the log is one of them."""
+    if taken.in_current or taken.log.effort != "current":
+        return {}
+    values = {
+        "ratio": f"{abs(taken.drive.gear.kinematics.ratio):.6g}",
+        "torque constant": f"{float(getattr(taken.drive.motor, 'torque_constant', 0.0)):.4g} N·m/A",
+    }
+    return {name: value for name, value in values.items() if not checks & CHECKS_OF[name]}
+
+
+def _scales(unchecked: Mapping[str, str]) -> Iterator[str]:
+    """Yield the sentence about numbers of the drive that a log does not check."""
+    names = [f"the {name}, {value}" for name, value in unchecked.items()]
+    if len(names) == 2:
+        yield f"one encoder checks neither {', nor '.join(names)}: friction, inertia and gravity scale with them"
+    elif names:
+        yield f"it does not check {names[0]}: friction, inertia and gravity scale with it"
 
 
 def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:

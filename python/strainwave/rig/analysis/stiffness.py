@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.rig.analysis.line import fit_line
 from strainwave.rig.analysis.regimes import Regime, RegimeName
 from strainwave.rig.analysis.result import Result, inverse, result, student
@@ -58,7 +59,7 @@ class LocalStiffness(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class Stiffness(ComparedByFields):
+class Stiffness(ComparedByFields, Presented):
     """Stiffness of a regime by three definitions, which agree if its points lie on one straight line.
 
     Attributes:

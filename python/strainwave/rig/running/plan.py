@@ -18,6 +18,7 @@ from typing import Literal, NamedTuple, get_args
 from strainwave import arguments
 from strainwave.files.gear_file import at
 from strainwave.messages import one_line
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 
@@ -46,7 +47,7 @@ class PlannedStep(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Presented):
     """The steps of a torsion test, and what to do for each.
 
     Attributes:

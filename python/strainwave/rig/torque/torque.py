@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop
@@ -30,7 +31,7 @@ CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a torque [1]
 
 
 @dataclass(frozen=True, eq=False)
-class Torque(ComparedByFields):
+class Torque(ComparedByFields, Presented):
     """Torques of the steps of a test, each of shape (n,).
 
     Attributes:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
@@ -25,7 +26,7 @@ _MAX_ITERATIONS = 100  # of the circle fit
 
 
 @dataclass(frozen=True, eq=False)
-class Circle(ComparedByFields):
+class Circle(ComparedByFields, Presented):
     """A circle fitted to points.
 
     Attributes:
