@@ -33,6 +33,7 @@ from strainwave.report.first_screen import next_commands, not_determined, number
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
+from strainwave.statistics.residuals import rms
 from strainwave.typeset import fixed, interval, number, percent, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -170,8 +171,9 @@ def _card(result: FileResult, anchor: str) -> dict[str, Any]:
 
 def _caption(result: FileResult, picture: Picture) -> str:
     curves = picture.curves
-    error, of = float(np.sqrt(np.mean(residual_of(curves) ** 2))), curves.unit(curves.names[1])
-    words = [f"Model: {picture.model or result.model}. Root mean square of what is left: {quantity(error, of)}."]
+    of, words = curves.unit(curves.names[1]), [f"Model: {picture.model or result.model}."]
+    if result.held_out is None or result.held_out.unit != of:  # else the error on data held out stands beside it
+        words.append(f"RMS error {quantity(rms(residual_of(curves)), of)}.")
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
     if "held_out" in curves and curves["held_out"].any():
