@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.orders.lines import SpectrumLine
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 from strainwave.typeset import number
@@ -58,7 +59,7 @@ class OrderPassing:
 
 
 @dataclass(frozen=True)
-class RunUp:
+class RunUp(Presented):
     """Vibration of a shaft whose speed varies.
 
     Attributes:
