@@ -155,8 +155,8 @@ class Torsion(Kind):
 def _why_unused(current: Column) -> str:
     """Return why a current beside a spring behind the gear is not used."""
     return (
-        f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for the friction "
-        "of the gear write time, the angle of the motor and the current to a file of their own"
+        f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for the "
+        "friction of the gear write time, the angle of the motor and the current to a file of their own"
     )
 
 
