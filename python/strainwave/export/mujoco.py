@@ -19,7 +19,7 @@ import numpy as np
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.robot import Element, Robot, child, kept, written
+from strainwave.export.robot import Element, Robot, child, gears_of_joints, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed
 from strainwave.tuning.drawn import drawn_gears
@@ -84,7 +84,7 @@ def mjcf(
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     if into is not None and joint is not None:
         robot = Robot.of(into)
-        gears = _gears_of_joints(robot, joint, gear_set)
+        gears = gears_of_joints(robot, joint, gear_set)
         exports = {
             shaft: _with_elements(robot, shaft, each, max_torque, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
             for shaft, each in gears.items()
@@ -104,27 +104,6 @@ def mjcf(
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
     names = listed(dict.fromkeys(each.name for each, _, _ in exports.values()))
     return Exported("mjcf", names, files, {}, losses, left_out, remarks)
-
-
-def _gears_of_joints(
-    robot: Robot, joint: str | Mapping[str, GearSet | Drive | Gear | str | Path], default: GearSet
-) -> dict[str, GearSet]:
-    """Return the gear of each joint that gets one, in the order of the robot.
-
-    Raises:
-        ValueError: the robot has no such hinge
-    """
-    if isinstance(joint, Mapping):
-        chosen = {name: gear_set_of(gear) for name, gear in joint.items()}
-    else:
-        entries = [each.strip().partition("=") for each in joint.split(",")]
-        chosen = {name: GearSet.read(gear) if gear else default for name, _, gear in entries}
-    others = chosen.pop("all", None)
-    hinges = list(robot.hinges())
-    for name in chosen:
-        robot.hinge(name)
-    gears = {name: chosen.get(name, others) for name in hinges}
-    return {name: gear for name, gear in gears.items() if gear is not None}
 
 
 def _with_elements(

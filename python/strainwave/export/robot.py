@@ -6,12 +6,15 @@ around it, else the main class. A gear that is added between two bodies states w
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 
+from strainwave import Drive, Gear
+from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, quoted
 
 Element = ElementTree.Element
@@ -191,6 +194,28 @@ class Robot:
                 key.set("ctrl", " ".join([key.attrib["ctrl"], *["0"] * controls]))
             if key.get("act"):
                 yield f"act of the keyframe {key.get('name', '')} lacks the states of the gear's motor: add them by hand"
+
+
+def gears_of_joints(
+    robot: Robot, joint: str | Mapping[str, GearSet | Drive | Gear | str | Path], default: GearSet
+) -> dict[str, GearSet]:
+    """Return the gear of each joint that gets one, in the order of the robot.
+
+    Raises:
+        ValueError: the robot has no such hinge
+    """
+    if isinstance(joint, Mapping):
+        chosen = {name: gear_set_of(gear) for name, gear in joint.items()}
+    else:
+        entries = [each.strip().partition("=") for each in joint.split(",")]
+        files = {gear: GearSet.read(gear) if gear else default for _, _, gear in entries}
+        chosen = {name: files[gear] for name, _, gear in entries}
+    others = chosen.pop("all", None)
+    hinges = list(robot.hinges())
+    for name in chosen:
+        robot.hinge(name)
+    gears = {name: chosen.get(name, others) for name in hinges}
+    return {name: gear for name, gear in gears.items() if gear is not None}
 
 
 def kept(names: str | None) -> tuple[str, ...]:
