@@ -35,7 +35,7 @@ SPEEDS = np.concatenate([-np.geomspace(100.0, 1.0, 50), np.geomspace(1.0, 100.0,
 
 
 class Compared(NamedTuple):
-    """Comparison of a host: the RMS difference to the simulation over the size of a quantity, and steps per processor second."""
+    """Comparison of a host: RMS difference to the simulation over the size of a quantity, and steps per processor second."""
 
     share: float
     quantity: str
@@ -130,6 +130,40 @@ def in_fmpy(version: int, exchange: bool) -> Callable[[sw.GearSet, Path], Compar
         return Compared(share(angle, wanted["output_angle"]), "output angle", rate_of_steps)
 
     return run
+
+
+# Runs in a process of its own: its library prints. The wheel of ecospy lacks a library of TBB, which that of tbb contains.
+ECOS_RUN = """
+import ctypes, importlib.metadata, sys, time, numpy
+(library,) = (each for each in importlib.metadata.files("tbb") if each.name == "libtbb.so.12")
+ctypes.CDLL(str(library.locate()), ctypes.RTLD_GLOBAL)
+from ecospy import EcosSimulation, EcosSimulationStructure
+path, commands, step, out = sys.argv[1:]
+structure = EcosSimulationStructure()
+structure.add_model("gear", path)
+simulation = EcosSimulation(float(step), structure=structure)
+simulation.init()
+angles, begin = [], time.process_time()
+for command in numpy.load(commands):
+    simulation.set_real("gear::command", command)
+    angles.append(simulation.get_real("gear::output_angle"))
+    simulation.step()
+numpy.save(out, [*angles, len(angles) / (time.process_time() - begin)])
+"""
+
+
+def in_ecos(gear_set: sw.GearSet, folder: Path) -> Compared:
+    """Return the run of an FMU by ecos, whose importer is fmi4c."""
+    (path,) = folder.glob("*.fmu")
+    instants = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION_STEP) + 1)
+    np.save(folder / "commands.npy", motion().value(instants))
+    words = [str(path), str(folder / "commands.npy"), str(COMMUNICATION_STEP), str(folder / "angles.npy")]
+    done = subprocess.run([sys.executable, "-c", ECOS_RUN, *words], capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+    *angles, rate = np.load(folder / "angles.npy")
+    wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)["output_angle"]
+    return Compared(share(np.array(angles), wanted), "output angle", rate)
 
 
 # Runs in a process of its own: a plugin stays registered.
@@ -294,6 +328,8 @@ HOSTS = (
     Host("MuJoCo, plugin", ("mujoco-plugin",), in_plugin),
     Host("FMPy, FMI 2 co-simulation", ("fmu",), in_fmpy(2, False)),
     Host("FMPy, FMI 3 co-simulation", ("fmu", "--version", "3"), in_fmpy(3, False)),
+    Host("ecos, FMI 2 co-simulation", ("fmu",), in_ecos),
+    Host("ecos, FMI 3 co-simulation", ("fmu", "--version", "3"), in_ecos),
     Host("FMPy, FMI 2 model exchange", ("fmu", "--model-exchange"), in_fmpy(2, True)),
     Host("FMPy, FMI 3 model exchange", ("fmu", "--version", "3", "--model-exchange"), in_fmpy(3, True)),
     Host("firmware, double", ("firmware", "--part", "drive", "--scalar", "double", "--name", "drive"), in_firmware("double")),

@@ -60,7 +60,7 @@ numpy.save(out, rows)
 def mujoco_plugin(
     drive: Drive | GearSet,
     *,
-    into: str | None = None,
+    into: str | Path | None = None,
     joint: str | Mapping[str, GearSet | str | Path] | None = None,
     keep: str | None = None,
     load_inertia: float | None = None,
@@ -76,7 +76,7 @@ def mujoco_plugin(
 
     Args:
         drive: a drive, or a gear set with one. A body of MuJoCo takes the place of its load
-        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        into: MJCF file of a robot, or its text; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another drive as
             "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a drive for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the drive's, as "damping,armature"

@@ -44,7 +44,7 @@ def mjcf(
     *,
     max_torque: float | None = None,
     load_inertia: float | None = None,
-    into: str | None = None,
+    into: str | Path | None = None,
     joint: str | Mapping[str, GearSet | Drive | Gear | str | Path] | None = None,
     keep: str | None = None,
     draws: int = 0,
@@ -57,7 +57,7 @@ def mjcf(
         drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
-        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        into: MJCF file of a robot, or its text; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another gear as
             "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a gear for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the gear's, as "damping,armature"
@@ -222,10 +222,10 @@ def attach(
     """
     shaft = robot.hinge(joint)
     remarks = list(robot.replace_friction(shaft, friction_attributes(elements.at_output, robot.timestep), keep))
-    link = robot.parents[shaft]
+    link = robot.body_of(shaft)
     before = len(robot.root.findall("actuator/*"))
     rotor = add_gear(robot, link, shaft, elements, actuator, name)
-    added = len(robot.root.findall("actuator/*")) - before
+    added = robot.root.findall("actuator/*")[before:]
     remarks += [*robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
     # Semi-implicit Euler with explicit damping is stable for k dt^2 + 2 c dt < 4 J.
     lightest = 0.25 * stiffness_at_rest(elements) * robot.timestep**2 + 0.5 * elements.damping * robot.timestep
