@@ -87,7 +87,7 @@ def install_tools() -> tuple[str | Path, ...]:
     """Makes the environment with the tools of the build; returns the command that installs more into it."""
     check_machine()
     if not PYTHON.exists():
-        call(uv(), "venv", "--quiet", "--python", sys.executable, BIN.parent)
+        call(uv(), "venv", "--quiet", "--seed", "--python", sys.executable, BIN.parent)  # with pip, which installs the extras
     pip_install = (uv(), "pip", "install", "--quiet", "--python", PYTHON, "--constraints", PINS)
     say("installing the tools of the build")
     call(*pip_install, "--group", "build")

@@ -178,7 +178,7 @@ def controllers() -> dict[str, sw.control.Sampled]:
     }
     with_gear = {"gear": gear, "load": load, "motor_inertia": 2e-5, "reference_time": 2e-3, "limit": 2.0}
     laws: dict[str, Any] = {
-        "Kalman regulator, state space": sw.regulator(joint(), period=SAMPLE_PERIOD, error=1e-3, encoder="input"),
+        "Kalman regulator, state space": sw.tuning.lqg(joint(), period=SAMPLE_PERIOD, error=1e-3, encoder="input"),
         "feedback linearisation": sw.control.FeedbackLinearisation(bandwidth=60.0, **with_gear),
         "kinematic-error tracking": sw.control.KinematicErrorTracking(bandwidth=30.0, speed_gain=0.03, **with_gear),
     }

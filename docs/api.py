@@ -30,21 +30,15 @@ PAGES = {
     "report": "Files and recordings",
     "_core": "Gear and drive",
 }
-MODULES = {
-    "scenario": "Scenarios",
-    "rig": "Torsion rig",
-    "diagnose": "Misalignment",
-    "export": "Export",
-    "typeset": "Numbers in print",
-}
+MODULES = {"scenario": "Scenarios", "rig": "Torsion rig", "export": "Export"}
 VALUES = "Values in results"
 
 
 def write(folder: Path) -> None:
     """Write a page for each task, each module and the values in results, and the page that lists them."""
     folder.mkdir(exist_ok=True)
-    modules = sorted((name for name in sw.__all__ if ismodule(getattr(sw, name))), key=lambda name: (name not in MODULES, name))
-    pages = {file_name(title): ([heading(title)], names) for title, names in tasks().items()}
+    modules = sorted((name for name in sw.__all__ if is_page(name)), key=lambda name: (name not in MODULES, name))
+    pages = {file_name(title): (task_head(title), names) for title, names in tasks().items()}
     pages |= {name: introduced(name, getattr(sw, name)) for name in modules}
     pages[file_name(VALUES)] = ([heading(VALUES), "Classes of attributes of results. Functions make them."], values())
     for page, (head, names) in pages.items():
@@ -53,7 +47,7 @@ def write(folder: Path) -> None:
     index = [
         heading("Python API"),
         ".. py:module:: strainwave",
-        "All names are public: ``import strainwave as sw``, then for example ``sw.load``.",
+        "``import strainwave as sw``, then for example ``sw.load``, or ``sw.orders.campbell`` of a room.",
         *(f"* :doc:`{page}`: {', '.join(f':py:obj:`~{name}`' for name in names)}" for page, (_, names) in pages.items()),
         "\n".join([".. toctree::", "   :hidden:", "", *(f"   {page}" for page in pages)]),
     ]
@@ -104,12 +98,35 @@ def mentioned(documented: type[Any]) -> Iterator[type[Any]]:
 
 
 def tasks() -> dict[str, list[str]]:
-    """Return the full names of the functions and classes of the package, by the title of their page, functions first."""
+    """Return the full names of functions and classes at the top of the package and in its rooms, by the title of their page."""
     groups: dict[str, list[str]] = {title: [] for title in PAGES.values()}
-    for name in sorted(sw.__all__, key=lambda name: (name[0].isupper(), name)):
+    for name in in_order(sw.__all__):
         if not ismodule(member := getattr(sw, name)):
             groups[PAGES[member.__module__.split(".")[1]]].append(f"strainwave.{name}")
+    for room in rooms():
+        groups[PAGES[room]] += [f"strainwave.{room}.{name}" for name in in_order(public_names(getattr(sw, room)))]
     return groups
+
+
+def task_head(title: str) -> list[str]:
+    """Return the head of the page of a task: its rooms, and what they have."""
+    of_page = [room for room in rooms() if PAGES[room] == title]
+    texts = [f"``sw.{room}``: {(getattr(sw, room).__doc__ or '').strip()}" for room in of_page]
+    return [heading(title), *(f".. py:module:: strainwave.{room}" for room in of_page), *map(docstrings.restructured, texts)]
+
+
+def rooms() -> list[str]:
+    """Return the names of the public modules that are rooms of the package and have no page of their own."""
+    return [name for name in sw.__all__ if ismodule(getattr(sw, name)) and name in PAGES]
+
+
+def is_page(name: str) -> bool:
+    return ismodule(getattr(sw, name)) and name not in PAGES
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Return names in order, functions first."""
+    return sorted(names, key=lambda name: (name[0].isupper(), name))
 
 
 def public_names(module: ModuleType) -> list[str]:

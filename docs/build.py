@@ -5,7 +5,6 @@ python docs/build.py FOLDER
 
 from __future__ import annotations
 
-import re
 import shutil
 import sys
 from pathlib import Path
@@ -16,6 +15,7 @@ import catalogue_check
 import cli_reference
 import drawn
 import gallery
+import links
 import listed
 import theory
 import tutorials
@@ -26,29 +26,28 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 SOURCE = ROOT / "build" / "docs"
 TOOLS = ("__pycache__", "*.py")
-PAPER = re.compile(r"\]\((?:\.\./)*papers/([\w-]+)/README\.md")  # a link from a page of this folder to that of an article
 
 
 def gather() -> None:
     """Gather all that Sphinx reads in one folder: this one, the pages of the root and of papers/, and those generated."""
     shutil.rmtree(SOURCE, ignore_errors=True)
-    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns(*TOOLS))
+    shutil.copytree(HERE, SOURCE, ignore=shutil.ignore_patterns(*TOOLS, "*.md"))
     shutil.copy(HERE / "conf.py", SOURCE)
-    for page in (ROOT / "CONTRIBUTING.md", ROOT / "CHANGELOG.md", ROOT / "python" / "strainwave" / "AGENTS.md"):
-        text = page.read_text(encoding="utf-8")
-        (SOURCE / page.name.lower()).write_text(text.replace("](docs/", "]("), encoding="utf-8")
-    for page in (ROOT / "papers").glob("*/README.md"):
-        text = page.read_text(encoding="utf-8").replace("](../../docs/", "](../")
-        (SOURCE / "validation" / f"{page.parent.name}.md").write_text(text, encoding="utf-8")
-    for page in SOURCE.rglob("*.md"):
-        to_root = "../" * (len(page.relative_to(SOURCE).parts) - 1)
-        page.write_text(PAPER.sub(rf"]({to_root}validation/\1.md", page.read_text(encoding="utf-8")), encoding="utf-8")
+    pages = links.built_pages()
+    for path, page in pages.items():
+        if path.endswith(".md") and path != "README.md":  # which is a page of the code host alone
+            (SOURCE / page).parent.mkdir(parents=True, exist_ok=True)
+            text = links.relinked((ROOT / path).read_text(encoding="utf-8"), path, pages)
+            (SOURCE / page).write_text(drawn.pictured(listed.with_contents(text), page), encoding="utf-8")
     theory.write(SOURCE / "theory")
     tutorials.write(SOURCE / "tutorials")
+    for path, page in pages.items():
+        if page.startswith("tutorials/") and path.endswith(".py"):
+            text = links.relinked((SOURCE / page).read_text(encoding="utf-8"), path, pages)
+            (SOURCE / page).write_text(text, encoding="utf-8")
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
     gallery.write(SOURCE)
-    listed.write(SOURCE)
     catalogue_check.write(SOURCE / "reference" / "catalogue-check.md")
     drawn.draw(SOURCE)
 

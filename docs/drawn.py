@@ -18,9 +18,15 @@ from kept import COMPILED, MAX_PROCESSES, kept
 
 ROOT = Path(__file__).resolve().parent.parent
 RUN_SCRIPT = Path(__file__).with_name("run_script.py")
+PICTURE = re.compile(r"^<!-- picture ([\w./-]+): (.+) -->$", re.MULTILINE)  # a place on a page: NAME/PICTURE.png, and its words
 SHOWN = re.compile(r"(?<![\w/])(?:\.\./)?drawn/([\w-]+)/[\w-]+\.png")  # a picture on a page: drawn/NAME/PICTURE.png
 PRINTED, WARNINGS, VALUES = "printed.txt", "warnings.txt", "values.pickle"  # of a script, in its folder
 BLOCK = re.compile(r"^```python\n(?!>>>)(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def pictured(text: str, page: str) -> str:
+    """Return the text of a page with a picture at each place for one; a code host, which has no pictures, shows none."""
+    return PICTURE.sub(rf"![\2]({'../' * page.count('/')}drawn/\1)", text)
 
 
 def draw(source: Path) -> None:

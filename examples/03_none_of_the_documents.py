@@ -19,7 +19,7 @@ drive = sw.Drive(gear=gear, motor=sw.motor.CurrentSource(torque_constant=0.06, i
 ratio, reach = gear.kinematics.ratio, gear.kinematics.ratio * 0.06  # N.m at the output per A
 
 
-def controller(seen: sw.Observation) -> float:
+def controller(seen: sw.simulation.Observation) -> float:
     error = ratio * seen.command - seen.input_angle
     error_rate = ratio * seen.command_rate - seen.input_speed
     known = np.interp(seen.output_angle, clamp.angle, clamp.held_torque) / reach

@@ -12,7 +12,7 @@ import numpy as np
 import strainwave as sw
 
 ratio = -100.0
-bearing = sw.bearing_orders(balls=23, ball_diameter=5.5e-3, pitch_diameter=45e-3, outer_speed=1 / ratio)
+bearing = sw.orders.bearing_orders(balls=23, ball_diameter=5.5e-3, pitch_diameter=45e-3, outer_speed=1 / ratio)
 orders = [1.0, 2.0, 4.0, bearing.outer_ring]
 gear = sw.Gear(
     kinematics=sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202),
@@ -41,14 +41,14 @@ turns = (run["input_angle"] - run["input_angle"][0]) / (2.0 * np.pi)
 ends = np.searchsorted(turns, np.arange(20.0, turns[-1], 5.05))
 stretches = [run.between(run.time[a], run.time[b]) for a, b in pairwise(ends)]
 speed = np.array([stretch["input_speed"].mean() for stretch in stretches])
-torque = np.array([sw.order_amplitudes(stretch, "torque", orders).amplitude for stretch in stretches])
+torque = np.array([sw.orders.order_amplitudes(stretch, "torque", orders).amplitude for stretch in stretches])
 
-(mode,) = sw.modes(drive)["free"]
+(mode,) = sw.analysis.modes(drive)["free"]
 predicted = mode / np.array(orders)
 observed = speed[torque.argmax(axis=0)]
 print(f"eigenfrequency {mode:.1f} rad/s = {mode / 2 / np.pi:.1f} Hz")
 for order, critical, peak in zip(orders, predicted, observed, strict=True):
     print(f"order {order:6.3f}: critical speed {critical:5.1f} rad/s predicted, {peak:5.1f} rad/s observed")
 
-diagram = sw.campbell(run, "torque")
+diagram = sw.orders.campbell(run, "torque")
 diagram.plot(orders=orders, eigenfrequencies=[mode]).savefig("run_up.png")

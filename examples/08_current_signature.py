@@ -34,7 +34,7 @@ for load in loads:
     start = {"input_speed": speed, "output_speed": speed / ratio, "torque": load}
     run = sw.simulate(drive, command, load_torque=load, initial=start, sample=1e-3)
     settled = run.between(duration - 10.1 * 2.0 * np.pi / speed, duration)
-    found.append(sw.order_amplitudes(settled, "current", orders).amplitude)
+    found.append(sw.orders.order_amplitudes(settled, "current", orders).amplitude)
 measured = np.array(found)
 
 s = 1j * np.array(orders) * speed

@@ -1,16 +1,16 @@
 """How much of the "stochastic" kinematic error is random, and why it changes with the speed.
 
-Document R calls the part of the error that grows with the speed stochastic, and asks where it comes from. Here an encoder pair
-sees the error of teeth and bearing, noise that really is random but the same over the angle at every speed, and the twist that
-both excite. Look at the dashed line: orders near the eigenfrequency grow, orders far above it vanish. The resonance changes
-with the speed, not the noise. Numbers are assumed.
+The review of dynamic models calls the part of the error that grows with the speed stochastic, and asks where it comes from.
+Here an encoder pair sees the error of teeth and bearing, noise that really is random but the same over the angle at every
+speed, and the twist that both excite. Look at the dashed line: orders near the eigenfrequency grow, orders far above it vanish.
+The resonance changes with the speed, not the noise. Numbers are assumed.
 """
 
 import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
 
-bearing = sw.bearing_orders(balls=23, ball_diameter=5.5e-3, pitch_diameter=45e-3, outer_speed=-0.01)
+bearing = sw.orders.bearing_orders(balls=23, ball_diameter=5.5e-3, pitch_diameter=45e-3, outer_speed=-0.01)
 orders, amplitudes = [1.0, 2.0, 4.0, bearing.outer_ring], [2e-5, 6e-5, 1e-5, 4e-6]
 drive = sw.Drive(
     gear=sw.Gear(
@@ -25,7 +25,7 @@ drive = sw.Drive(
     load=sw.loads.Inertia(inertia=0.05),
 )
 ratio = drive.gear.kinematics.ratio
-(mode,) = sw.modes(drive)["free"]
+(mode,) = sw.analysis.modes(drive)["free"]
 found = {}
 figure = Figure(figsize=(9.0, 7.5), layout="constrained")
 for axes, speed in zip(figure.subplots(3, 1, sharex=True), (15.0, 60.0, 190.0), strict=True):
@@ -33,8 +33,8 @@ for axes, speed in zip(figure.subplots(3, 1, sharex=True), (15.0, 60.0, 190.0), 
     command = sw.scenario.constant(speed / ratio, duration=1.0 + 20.0 * turn)
     run = sw.simulate(drive, command, initial={"input_speed": speed}, sample=turn / 400.0)
     seen = run.between(1.0, 1.0 + 20.0 * turn)
-    found[speed] = sw.order_amplitudes(seen, "transmission_error", orders)
-    spectrum = sw.order_spectrum(seen, "transmission_error", highest=45.0)
+    found[speed] = sw.orders.order_amplitudes(seen, "transmission_error", orders)
+    spectrum = sw.orders.order_spectrum(seen, "transmission_error", highest=45.0)
     axes.vlines(orders, 1e-9, found[speed].amplitude, color="tab:orange", linewidth=4.0, alpha=0.6, label="orders asked for")
     axes.plot(spectrum["order"], spectrum["amplitude"], linewidth=0.8, label="spectrum")
     axes.axvline(mode / speed, color="black", linestyle="--", linewidth=1.0, label="eigenfrequency")

@@ -1,10 +1,10 @@
 """A misaligned gear in an actuator that tilts a nacelle: current and torque with and without the misalignment.
 
-The actuator of document A moves its nacelle by 90 degrees in 5 s, against the air stream. Its wave generator sits 10 um off the
-axis of the circular spline and leans by 0.05 degrees. Look at the current: its ripple comes twice per turn of the generator, at
-10.1 Hz, and near the end of the stroke it is about what the load makes of the error. Document A finds torques significantly
-greater than nominal: here the peak is 1 % greater, and 3 % with twice the misalignment.
-The gear is lumped: "tilt-actuator" has its stages, and shows the same.
+The actuator of the flight actuator paper moves its nacelle by 90 degrees in 5 s, against the air stream. Its wave generator
+sits 10 um off the axis of the circular spline and leans by 0.05 degrees. Look at the current: its ripple comes twice per turn
+of the generator, at 10.1 Hz, and near the end of the stroke it is about what the load makes of the error. The flight actuator
+paper finds torques significantly greater than nominal: here the peak is 1 % greater, and 3 % with twice the misalignment. The
+gear is lumped: "tilt-actuator" has its stages, and shows the same.
 """
 
 import numpy as np
@@ -32,11 +32,11 @@ for name, run in reversed(runs.items()):
     current.plot(run.time, run["current"], linewidth=0.9, label=name)
     last = run.between(5.0 - 5.0 * turn, 5.0)
     orders = np.arange(1.0, 13.0)
-    rippled = sw.order_amplitudes(last, "current", orders).amplitude
+    rippled = sw.orders.order_amplitudes(last, "current", orders).amplitude
     spectra.bar(orders + 0.25 * len(found) - 0.25, 1e3 * rippled, width=0.25, label=name)  # side by side
     later = run.time > 0.5
     found[name] = {
-        "error": sw.order_amplitudes(last, "kinematic_error", [2.0]).amplitude[0],
+        "error": sw.orders.order_amplitudes(last, "kinematic_error", [2.0]).amplitude[0],
         "current": rippled[1],
         "peak": run["torque"][later].max() / straight["torque"][later].max(),
         "load": last["torque"].mean(),

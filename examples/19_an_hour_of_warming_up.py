@@ -39,7 +39,7 @@ def worked(added: sw.Compensation, rounds: int = 24) -> np.ndarray:
     drive = plant.controlled(law, added).replace(gear=gear, thermal=heat, sensors=sw.Sensors())
     state, rows = drive.rest(), []
     for _ in range(rounds):
-        run = sw.simulate(drive, swing, dt=1e-3, sample=4e-3, start=state)
+        run = sw.simulate(drive, swing, dt=1e-3, sample=4e-3, initial=state)
         state, error, speed = run.end, run["command"] - run["output_angle"], float(np.mean(np.abs(run["input_speed"])))
         warm = float(run["temperature"][-1])
         friction = gear.friction_input.steady(speed, temperature=warm) / gear.friction_input.steady(speed)

@@ -1,4 +1,4 @@
-"""Document T's soft gear with a compensated controller: the limit cycle of example 14 gone, and the arm where it should be.
+"""The soft gear with a compensated controller: the limit cycle of example 14 gone, and the arm where it should be.
 
 A fast position loop on the arm swings for ever; one on the motor rests, but leaves the arm off by the hysteresis. Here the
 fast loop stays on the motor, and a slow integral of the error of the arm shifts its command: an `AdaptiveFourier` of order 0.
@@ -36,7 +36,7 @@ def moved(name: str, command: sw.scenario.Scenario, push: sw.scenario.Scenario |
 
 def along(*targets: float, overshoot: float = 0.0) -> sw.scenario.Scenario:
     """A path to angles [deg] at 5 rad/s2 or less."""
-    path = sw.positioning_path(np.radians(targets), overshoot, speed=2.0, acceleration=5.0).command
+    path = sw.tuning.positioning_path(np.radians(targets), overshoot, speed=2.0, acceleration=5.0).command
     return sw.scenario.table(time, path.value(np.minimum(time, path.duration)))
 
 
@@ -65,7 +65,7 @@ for name, (_, parts) in controllers.items():
     lag = max(np.abs(each - np.degrees(path.value(time))).max() for each, path in pairs)
     print(f"{name:22}: swings by", ", ".join(f"{swings[name, kind].max():.3f} ({kind})" for kind in kinds), end=" deg; ")
     print(f"off by {lag:.3f} deg along paths, {np.abs(errors[name, 'path']).max():.4f} deg after them")
-overshoot, apart = sw.lost_motion(gear, swing=arm.inertia * 5.0).overshoot(), {}  # by the torque of acceleration
+overshoot, apart = sw.tuning.lost_motion(gear, swing=arm.inertia * 5.0).overshoot(), {}  # by the torque of acceleration
 for way, beyond in (("both sides", 0.0), ("one side", overshoot)):
     below, above = (moved("loop on the motor", along(*to, overshoot=beyond)) for to in ((0.0, 3.0), (6.0, 3.0)))
     apart[way] = np.degrees(above["output_angle"][-1] - below["output_angle"][-1])

@@ -56,7 +56,7 @@ def measured(drive: sw.Drive, signal: str, orders: tuple[float, ...], turns: int
     command = sw.scenario.ramp(rate=speed / 100.0 * bool(turns), duration=end)
     run = sw.simulate(drive, command, load_torque=push, sample=1.0 / rate, record=columns).between(begin, end)
     if signal == LINE:
-        return list(1e3 * sw.order_amplitudes(run, "current", orders).amplitude)
+        return list(1e3 * sw.orders.order_amplitudes(run, "current", orders).amplitude)
     if not turns:
         return [60.0 * np.degrees(np.ptp(run["output_angle"]) if signal == TWIST else abs(run["output_angle"].mean()))]
     return [abs(run["current"].mean() if signal == MEAN else run["voltage"].mean() / run["current"].mean())]
@@ -65,7 +65,7 @@ def measured(drive: sw.Drive, signal: str, orders: tuple[float, ...], turns: int
 figure = Figure(figsize=(11.0, 15.0), layout="constrained")
 found: dict[str, np.ndarray] = {}  # signal by severity and order
 for axes, (name, (worst, signal, orders, turns)) in zip(figure.subplots(6, 3).flat, faults.items(), strict=True):
-    faulty = [sw.with_faults(joint, [worst.replace(severity=severity)]) for severity in severities[1:]]
+    faulty = [sw.dataset.with_faults(joint, [worst.replace(severity=severity)]) for severity in severities[1:]]
     found[name] = np.array([measured(drive, signal, orders, turns) for drive in (joint, *faulty)])
     floor = hidden.get(signal, highest / np.sqrt(max(turns, 1)))
     for number, (order, values) in enumerate(zip(orders or [None], found[name].T, strict=True)):

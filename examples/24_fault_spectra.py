@@ -33,12 +33,12 @@ def spectrum(drive: sw.Drive, seed: int) -> tuple[np.ndarray, np.ndarray]:
     run = sw.simulate(drive, command, 5e-4, load_torque=load, sample=1e-3, record=["input_angle", "current"])
     record = run.between(1.0, duration)
     current = record["current"] + noise * np.random.default_rng(seed).standard_normal(len(record))
-    lines = sw.order_spectrum(record.with_column("current", current, "A"), "current", 12.5)
+    lines = sw.orders.order_spectrum(record.with_column("current", current, "A"), "current", 12.5)
     return lines["order"], 1e3 * lines["amplitude"]
 
 
 order, healthy = spectrum(joint, 0)
-found = {name: spectrum(sw.with_faults(joint, [each]), seed)[1] for seed, (name, each) in enumerate(faults.items(), 1)}
+found = {name: spectrum(sw.dataset.with_faults(joint, [each]), seed)[1] for seed, (name, each) in enumerate(faults.items(), 1)}
 floor = (
     1e3 * noise * np.sqrt(6.0 * np.log(1e3) / (1e3 * (duration - 1.0)))
 )  # mA by noise under a Hann window, in 1 of 1000 lines

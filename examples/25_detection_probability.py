@@ -1,9 +1,9 @@
 """Probability that a crack is found from the motor current, over its severity: a small version of the detection benchmark.
 
 Units differ in friction and stiffness, days of a unit in friction and load. The comparison with healthy days of a unit is that
-of `strainwave diagnose`, at one false alarm in a thousand. The simplest detector is the change of the current's rms without its
-mean; its threshold is the largest change on 12 healthy days of other units. Look at severity 0: twelve days are too few for a
-threshold. The bands are intervals of 95 %.
+of `strainwave diagnose joint`, at one false alarm in a thousand. The simplest detector is the change of the current's rms
+without its mean; its threshold is the largest change on 12 healthy days of other units. Look at severity 0: twelve days are too
+few for a threshold. The bands are intervals of 95 %.
 """
 
 import numpy as np
@@ -34,7 +34,7 @@ def day(unit: np.ndarray, severity: float = 0.0) -> np.ndarray:
     friction, push = 1.0 + np.array([0.1, 0.05]) * chance.uniform(-1.0, 1.0, 2)
     factors = unit * (friction, 1.0)
     numbers = {path: factors[scaled[path.rpartition(".")[2]]] * value for path, value in own.items()}
-    drive = sw.with_faults(joint.replace(numbers), [sw.fault.FlexsplineCrack(severity=severity)])
+    drive = sw.dataset.with_faults(joint.replace(numbers), [sw.fault.FlexsplineCrack(severity=severity)])
     command = sw.scenario.constant(speed / 100.0, 1.5 + duration)
     run = sw.simulate(drive, command, 8e-4, load_torque=load * push, sample=4e-3, record=["input_angle", "current"])
     record = run.between(1.5, 1.5 + duration)

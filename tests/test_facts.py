@@ -123,7 +123,7 @@ def test_a_gear_refuses_parts_that_contradict_each_other(gear: sw.Gear, parts: d
 
 def test_members_of_an_ensemble_that_contradict_are_refused_alone() -> None:
     drive = sw.load("tilt-actuator")
-    with pytest.warns(sw.EnsembleWarning, match="1 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="1 of 2 members have no result"):
         runs = sw.simulate_many(
             drive, sw.scenario.constant(0.0, 1e-4), {"gear.structure.pitch_radius": [25e-3, 26e-3]}, dt=2e-5, record=["torque"]
         )

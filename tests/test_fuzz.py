@@ -114,7 +114,7 @@ def test_what_is_wrong_in_the_package_is_told_with_its_function() -> None:
         (RuntimeWarning, "overflow encountered in multiply", "a library's words, in a warning from"),
         (RuntimeWarning, "the drive has bristles\n", "more than one line, or control characters, in a warning from"),
         (RuntimeWarning, "the drive has bristles", ""),
-        (sw.EnsembleWarning, "1 of 2 members have no result", ""),
+        (sw.simulation.EnsembleWarning, "1 of 2 members have no result", ""),
     ],
 )
 def test_a_warning_that_is_not_documented_is_wrong(category: type[Warning], message: str, fault: str) -> None:

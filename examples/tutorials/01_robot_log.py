@@ -35,7 +35,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #
 # Three facts are not in the log. You find the first two on data sheets:
 #
-# * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave gears 20-80` lists the catalogue sets
+# * **The gear.** The joint has a strain wave gear of size 20 and ratio 80. `strainwave list gears 20-80` lists the sets
 #   of this size; `hfuc-20-80` is one of them. Its numbers are the start; those that the log determines are replaced.
 # * **The torque constant** of the motor, 0.0755 N·m/A. Without it all torques are in A.
 # * **The side** of the angle: in front of the gear or behind it. Here the names `q` and `qd` are enough, because robots name
@@ -61,7 +61,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 # * The numbers: value ± standard deviation. The friction is at the motor's side; multiply it by 80 for the joint.
 #
 # The exit code is 0. It is 3 if a check finds a contradiction, and then there is no `gear.toml`: [five wrong
-# assumptions](02_wrong_assumptions.md).
+# assumptions](02_wrong_assumptions.py).
 #
 # ## 3. Open the report
 #
@@ -105,7 +105,7 @@ for each in found.states:
 # * **kept**: the log does not determine it. A log of one encoder does not show stiffness and kinematic error, so they are
 #   those of the catalogue, or assumed.
 # * **breakaway** has no standard deviation: it was set equal to the Coulomb torque, because the log shows no fall of the
-#   friction at low speed. A [table of friction](05_which_friction.md) determines it.
+#   friction at low speed. A [table of friction](05_which_friction.py) determines it.
 #
 # For each number that is not determined, the report lists the measurement that determines it.
 #
@@ -123,7 +123,7 @@ print(f"load: {drive.load.inertia:.3f} kg.m2, {drive.load.gravity_torque:.2f} N.
 
 # %% [markdown]
 # The file is a drive: gear, motor and load, with the source of each number. `strainwave show` prints it, `strainwave predict`
-# compares it with [a second log](03_second_log.md), and [other programs](../how-to/exports.md) take it.
+# compares it with [a second log](03_second_log.py), and [other programs](../../docs/how-to/exports.md) take it.
 #
 # ## 6. Compare with the truth
 #
@@ -151,7 +151,7 @@ for parameter in found.parameters:
 # **Viscous friction is 5 % too low**, and Coulomb friction 2 % too high. Their standard deviations contain this: another law of
 # friction predicts the log as well, and its numbers lie as far apart. The cause is the rate of the log, 100 samples a second:
 # at a reversal the friction changes its sign between two of them. So **record faster** if you can, or [add a table of
-# friction](05_which_friction.md).
+# friction](05_which_friction.py).
 #
 # ## 7. Now your own log
 #
@@ -167,4 +167,4 @@ for parameter in found.parameters:
 #
 # **What can go wrong.** If a large share is unexplained, other joints may have moved, or the motion was too small. A log of
 # one direction does not separate Coulomb friction from the zero of the current. [Identify a gear from
-# measurements](../how-to/identify.md) has the details.
+# measurements](../../docs/how-to/identify.md) has the details.

@@ -134,4 +134,4 @@ _ = panels[1].set(xlabel="time [s]")
 # | 2 | no file can be used | the message has the option that is missing |
 # | 3 | a check failed | see *what to do* below it; `--accept` writes the gear all the same, with a note |
 #
-# [All checks](../reference/identify.md#checks) are listed with their limits.
+# [All checks](../../docs/reference/identify.md#checks) are listed with their limits.

@@ -4,7 +4,7 @@
 # At the end you know whether a joint still agrees with its gear file, and if not, what changed. It takes ten minutes. You
 # need `strainwave` and an empty folder with the files above.
 #
-# [Tutorial 1](01_robot_log.md) made a gear file from a log. Two questions remain. Does it predict another motion? And half a
+# [Tutorial 1](01_robot_log.py) made a gear file from a log. Two questions remain. Does it predict another motion? And half a
 # year later: is it still the same joint?
 #
 # ## 1. The saved joint
@@ -107,4 +107,4 @@ _ = panels[-1].set(xlabel="time [s]")
 #   differs from the first log.
 #
 # All messages, and what `predict` compares of other files, are in [Compare a later recording with a saved
-# joint](../how-to/predict.md).
+# joint](../../docs/how-to/predict.md).

@@ -71,7 +71,7 @@ total = run["input_angle"] / gear.kinematics.ratio - run["output_angle"]
 print("transmission error = kinematic error + twist:", np.allclose(total, run["kinematic_error"] + run["twist"], atol=1e-12))
 
 forward = run.between(5.5, 9.5)  # the arm moves one way
-(order_1, order_2) = sw.order_amplitudes(forward, "transmission_error", [1.0, 2.0]).amplitude
+(order_1, order_2) = sw.orders.order_amplitudes(forward, "transmission_error", [1.0, 2.0]).amplitude
 print(f"amplitude of order 1: {1e6 * order_1:.1f} µrad, of order 2: {1e6 * order_2:.1f} µrad")
 print(f"the gear file states for order 2: {1e6 * gear.kinematic_error.amplitude[0]:.1f} µrad")
 
@@ -133,14 +133,14 @@ panels[2].set(xlabel="time [s]", ylabel="error [µrad]")
 # %% [markdown]
 # ## Resonance: where the ripple meets the arm
 #
-# Spring and arm vibrate at an eigenfrequency. Order 2 meets it when the motor turns at half of it. `sw.modes` computes it,
-# and a run-up shows it: the speed of the motor grows steadily. The arm turns in a horizontal plane, so that its weight does
-# not load the spring.
+# Spring and arm vibrate at an eigenfrequency. Order 2 meets it when the motor turns at half of it. `sw.analysis.modes`
+# computes it, and a run-up shows it: the speed of the motor grows steadily. The arm turns in a horizontal plane, so that its
+# weight does not load the spring.
 
 # %%
 flat = joint.replace({"load.gravity_torque": 0.0})  # the arm turns in a horizontal plane
-(mode,) = sw.modes(flat)["input held"]
-(sliding,) = sw.modes(flat.replace({"gear.hysteresis": sw.hysteresis.MaxwellSlip()}))["input held"]
+(mode,) = sw.analysis.modes(flat)["input held"]
+(sliding,) = sw.analysis.modes(flat.replace({"gear.hysteresis": sw.hysteresis.MaxwellSlip()}))["input held"]
 print(f"eigenfrequency with the motor held: {mode:.0f} rad/s; order 2 meets it at {mode / 2:.0f} rad/s of the motor")
 print(f"without hysteresis: {sliding:.0f} rad/s; order 2 meets it at {sliding / 2:.0f} rad/s of the motor")
 
@@ -153,7 +153,7 @@ run_up = sw.simulate(flat, sw.scenario.table(time, angle), sample=1e-3, initial=
 ends = np.searchsorted(np.abs(run_up["input_angle"]) / (2.0 * np.pi), np.arange(5.0, 130.0, 3.0))
 stretches = [run_up.between(run_up.time[a], run_up.time[b]) for a, b in pairwise(ends)]
 speed = np.array([np.abs(each["input_speed"]).mean() for each in stretches])
-ripple = np.array([sw.order_amplitudes(each, "torque", [2.0]).amplitude[0] for each in stretches])
+ripple = np.array([sw.orders.order_amplitudes(each, "torque", [2.0]).amplitude[0] for each in stretches])
 print(f"largest ripple of the torque: {ripple.max():.1f} N.m, at {speed[ripple.argmax()]:.0f} rad/s")
 
 figure, axes = plt.subplots(figsize=(8.0, 4.0), layout="constrained")
@@ -165,8 +165,8 @@ axes.legend()
 
 # %% [markdown]
 # The peak lies between the two lines. In small motion the elements of the hysteresis stick and add their stiffness to that
-# of the spring; `sw.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance of a
-# gear moves with the amplitude, and no linear model has the right value.
+# of the spring; `sw.analysis.modes` computes this case. In larger motion they slide, and the gear is softer. So the resonance
+# of a gear moves with the amplitude, and no linear model has the right value.
 #
 # ## The share of each effect
 #
@@ -227,7 +227,8 @@ figure.legend(loc="outside lower center", ncols=3)
 #
 # ## Where to go on
 #
-# * [Simulate a drive](../how-to/simulate.md): steps, scenarios, temperature, noise.
-# * [The parts of a drive](../how-to/drives.md): other motors, controllers, loads and sensors.
-# * [Which model when](../how-to/which-model.md): friction and hysteresis that fit your joint.
-# * [Compensate torsion, friction and kinematic error](../how-to/compensate.md): what of this error a controller can remove.
+# * [Simulate a drive](../../docs/how-to/simulate.md): steps, scenarios, temperature, noise.
+# * [The parts of a drive](../../docs/how-to/drives.md): other motors, controllers, loads and sensors.
+# * [Which model when](../../docs/how-to/which-model.md): friction and hysteresis that fit your joint.
+# * [Compensate torsion, friction and kinematic error](../../docs/how-to/compensate.md): what a
+#   controller can remove of this error.

@@ -7,11 +7,11 @@
 # ## 1. A table of friction
 #
 # `friction.csv` is a table of 13 speeds in both directions. In each row the motor turned the gear at one speed, with
-# nothing at the output, and the torque was averaged. `rank` fits every law to it, and computes the error on rows that were
+# nothing at the output, and the torque was averaged. `--rank` fits every law to it, and computes the error on rows that were
 # not fitted.
 
 # %% [console]
-# $ strainwave rank hfuc-20-80 friction.csv
+# $ strainwave identify hfuc-20-80 friction.csv --rank
 
 # %% [markdown]
 # | column | meaning |
@@ -69,7 +69,7 @@ _ = panels[0].legend(fontsize="small")
 # rest. Two laws cannot follow, and are too high at 5 to 50 rad/s.
 
 # %%
-print(fits["with a fall at low speed"].summary())
+print(fits["with a fall at low speed"])
 
 # %% [markdown]
 # ## 3. What a table does not separate
@@ -85,13 +85,13 @@ print(f"law taken: {found.files[0].model}")
 
 fall = gear.replace(friction_input=laws["with a fall at low speed"])
 forced = sw.fit(fall, short, [f"friction_input.{each}" for each in free["with a fall at low speed"]])
-for each in sw.combinations(forced):
+for each in sw.identification.combinations(forced):
     print(each)
 
 # %% [markdown]
-# `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.combinations` reports that the numbers of
-# the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow speeds if your
-# joint moves slowly**.
+# `identify` takes a simpler law. If you fit the law with a fall to these rows, `sw.identification.combinations` reports
+# that the numbers of the fall are determined only together. Both are right: the rows contain no low speeds. So **record slow
+# speeds if your joint moves slowly**.
 #
 # **A table does not separate laws that differ before sliding.** `LuGre` has bristles that bend before the contact slides. At
 # constant speed it is the law with a fall:
@@ -109,15 +109,16 @@ lugre = sw.friction.LuGre(
 print(f"largest difference in a table: {np.abs(lugre.steady(grid) - stribeck.steady(grid)).max():.1e} N.m")
 
 # %% [markdown]
-# Small motions to and fro [determine the bristles](../how-to/measure.md#further-friction); reversals in a log show them.
+# Small motions to and fro [determine the bristles](../../docs/how-to/measure.md#further-friction); reversals in a log
+# show them.
 #
 # ## 4. What a log shows
 #
-# `robot_log.csv` is the log of [tutorial 1](01_robot_log.md). The joint carries an arm, so friction, gravity and inertia are
+# `robot_log.csv` is the log of [tutorial 1](01_robot_log.py). The joint carries an arm, so friction, gravity and inertia are
 # fitted together.
 
 # %% [console]
-# $ strainwave rank hfuc-20-80 robot_log.csv --constant torque_constant=0.0755
+# $ strainwave identify hfuc-20-80 robot_log.csv --constant torque_constant=0.0755 --rank
 
 # %% [markdown]
 # Each line is a set of effects; its error is further right. The table shows:
@@ -146,7 +147,7 @@ for parameter in both.parameters:
 # %% [markdown]
 # The table determines the law, and the log the load. **Both files are simulated**: the log by a program that shares nothing
 # with `strainwave`, the table by the steady friction of the same joint with 1 % noise. Now viscous friction is right as
-# well; the log alone gave it [5 % too low](01_robot_log.md).
+# well; the log alone gave it [5 % too low](01_robot_log.py).
 #
 # ## 6. Which law for your own joint
 #
@@ -157,5 +158,5 @@ for parameter in both.parameters:
 # | load on the joint | a table with a column `load`, two loads or more | with a loss under load |
 # | hours of running | a log with its temperature | `Thermal` |
 #
-# [Which model when](../how-to/which-model.md) compares all laws, and [What to measure](../how-to/measure.md)
+# [Which model when](../../docs/how-to/which-model.md) compares all laws, and [What to measure](../../docs/how-to/measure.md)
 # has the details.

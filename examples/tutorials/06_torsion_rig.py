@@ -25,7 +25,7 @@ print(Path("06_torsion_rig_bench.toml").read_text())
 # %% [markdown]
 # **With your own rig:** copy this file and write your numbers into it. `disk_radius` and the masses are needed. Measure
 # `pulley_torque` and `compliance` too: if they are left out, they count as zero, and the gear appears wider or softer. [The
-# torsion rig](../how-to/torsion-rig.md) describes what to build and how to measure each number.
+# torsion rig](../../docs/how-to/torsion-rig.md) describes what to build and how to measure each number.
 #
 # ## The plan
 #
@@ -172,6 +172,7 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 #
 # ## Where to go on
 #
-# * [Build and use a torsion test rig](../how-to/torsion-rig.md): what to build, cameras, uncertainty.
-# * [Analyse a torsion loop](../how-to/torsion-analysis.md): the definitions of stiffness, hysteresis and lost motion.
-# * [Simulate a joint](04_simulate_a_joint.md): what this gear does in a joint.
+# * [Torsion test: rig, test, analysis](../../docs/how-to/torsion-rig.md): what to build, cameras, uncertainty.
+# * [Analyse a torsion loop](../../docs/how-to/torsion-rig.md#analyse-a-torsion-loop): the definitions of
+#   stiffness, hysteresis and lost motion.
+# * [Simulate a joint](04_simulate_a_joint.py): what this gear does in a joint.

@@ -30,7 +30,7 @@ healthy = gear_set.drive
 drives = {"healthy": healthy}
 for micrometres in (15, 30):
     fault = sw.fault.Misalignment(housing_eccentricity=1e-6 * micrometres)
-    drives[f"{micrometres} µm"] = sw.with_faults(healthy, [fault])
+    drives[f"{micrometres} µm"] = sw.dataset.with_faults(healthy, [fault])
 
 turn = np.linspace(0.0, 2.0 * np.pi, 720, endpoint=False)
 figure, (left, right) = plt.subplots(1, 2, figsize=(10.0, 4.0), layout="constrained")
@@ -73,7 +73,7 @@ loads = np.array([0.0, 20.0, 40.0])
 figure, axes = plt.subplots(figsize=(7.0, 4.0), layout="constrained")
 for number, (name, drive) in enumerate(drives.items()):
     error = 2.0 * np.abs(np.fft.rfft(drive.gear.kinematic_error.error(turn)))[2] / len(turn)
-    current = [sw.order_amplitudes(recording(drive, load), "current", [2.0]).amplitude[0] for load in loads]
+    current = [sw.orders.order_amplitudes(recording(drive, load), "current", [2.0]).amplitude[0] for load in loads]
     print(f"{name:8} order 2 of the current [mA] at {loads} N.m: {(1e3 * np.array(current)).round(2)}")
     axes.plot(loads, 1e3 * np.array(current), "o", color=f"C{number}", label=name)
     axes.plot(loads, 1e3 * 2.0 * loads * error / TORQUE_CONSTANT, color=f"C{number}")
@@ -89,19 +89,19 @@ axes.legend()
 #
 # ## Before you record: the detection limit
 #
-# `sw.detection_limit` computes the smallest kinematic error that a planned recording shows. It needs the speed of the motor,
-# the load, the duration, the sample rate, and the noise of a sample of the current. Measure the noise at standstill.
+# `sw.diagnose.detection_limit` computes the smallest kinematic error that a planned recording shows. It needs the speed of
+# the motor, the load, the duration, the sample rate, and the noise of a sample of the current. Measure the noise at standstill.
 
 # %%
 plan = {"speed": OUTPUT_SPEED * abs(ratio), "duration": 10.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}
-limits = {load: sw.detection_limit(healthy, load_torque=load, **plan) for load in (0.0, 20.0)}
+limits = {load: sw.diagnose.detection_limit(healthy, load_torque=load, **plan) for load in (0.0, 20.0)}
 for load, limit in limits.items():
     print(f"{load:4.0f} N.m: an error of {1e6 * limit.amplitude:6.1f} µrad is found, insensitive: {limit.insensitive}")
     print("      remarks:", *limit.remarks or ["none"])
 
 # %% [markdown]
-# On the command line the same is `strainwave diagnose --plan --gear joint.toml --speed 10 --load 20 --duration 10 --noise
-# 0.05 --sample-rate 500 --order 2`.
+# On the command line the same is `strainwave diagnose limit joint.toml --speed 10 --torque 20 --duration 10 --noise
+# 0.05 --rate 500 --order 2`.
 #
 # Now make both recordings, with this noise, on the joint with 15 µm:
 
@@ -109,7 +109,7 @@ for load, limit in limits.items():
 figure, panels = plt.subplots(2, 1, sharex=True, figsize=(8.0, 5.0), layout="constrained")
 for axes, load in zip(panels, (0.0, 20.0), strict=True):
     noisy = recording(drives["15 µm"], load, noise=0.05, seed=1)
-    for line in sw.order_lines(noisy, "current", [2.0, 4.0]):
+    for line in sw.diagnose.order_lines(noisy, "current", [2.0, 4.0]):
         print(f"{load:4.0f} N.m, order {line.order:g}: {1e3 * line.amplitude:5.1f} mA, detected: {line.detected}")
     axes.plot(noisy.time, noisy["current"], linewidth=0.5)
     axes.set(ylabel="current [A]", title=f"{load:g} N.m at the output")
@@ -143,12 +143,12 @@ Path("baseline").mkdir()
 for number, friction in enumerate((1.1, 1.0, 0.9), 1):
     day(f"baseline/day-{number}.csv", arm, friction, number)
 day("later.csv", arm, 0.95, 4)
-day("misaligned.csv", sw.with_faults(arm, [sw.fault.Misalignment(housing_eccentricity=15e-6)]), 1.05, 5)
+day("misaligned.csv", sw.dataset.with_faults(arm, [sw.fault.Misalignment(housing_eccentricity=15e-6)]), 1.05, 5)
 print(*Path("later.csv").read_text().splitlines()[:3], sep="\n")
 
 # %% [console]
-# $ strainwave diagnose later.csv misaligned.csv --gear arm.toml --baseline baseline > diagnosis.txt || echo "exit code $?"
-# $ sed -n '/csv:/,/indicator/p' diagnosis.txt
+# $ strainwave diagnose joint later.csv misaligned.csv --gear arm.toml --baseline baseline > found.txt || echo "exit code $?"
+# $ sed -n '/csv:/,/indicator/p' found.txt
 
 # %% [markdown]
 # The exit code is 3 because a recording differs from the baseline. The healthy joint of the later day gives no alarm,
@@ -167,8 +167,9 @@ print(*Path("later.csv").read_text().splitlines()[:3], sep="\n")
 #
 # ## Where to go on
 #
-# * [Diagnose a gear from its motor current](../how-to/diagnose.md): the report, false alarms, remaining life.
-# * [Detection limit of the motor current](../how-to/detection-limit.md): what the limit depends on.
-# * [Estimate a misalignment from the motor current](../validation/misalignment-from-current.md): from the orders back to
-#   the geometry.
-# * [Fault data and a detector](09_fault_data.md): the same question for many units.
+# * [Diagnose a gear from its motor current](../../docs/how-to/diagnose.md): the report, false alarms, remaining life.
+# * [Detection limit of the motor current](../../docs/how-to/diagnose.md#detection-limit-of-the-motor-current): what the
+#   limit depends on.
+# * [Estimate a misalignment from the motor current](../../docs/validation/misalignment-from-current.md):
+#   from the orders back to the geometry.
+# * [Fault data and a detector](09_fault_data.py): the same question for many units.

@@ -11,7 +11,7 @@
 # ## The gear of a log
 #
 # A log has the time, the angle and the torque of a joint at its output. This one is computed by a formula, with a friction
-# of 6 N·m and 4 N·m·s/rad. Put your own log in its place: [the first tutorial](01_robot_log.md) shows how.
+# of 6 N·m and 4 N·m·s/rad. Put your own log in its place: [the first tutorial](01_robot_log.py) shows how.
 
 # %%
 import ctypes
@@ -185,7 +185,7 @@ axes.legend()
 #
 # | message or effect | cause, and what to do |
 # |---|---|
-# | `… has no [motor] and no [load]` | The file is a gear alone. Add the parts, as above, or begin from `strainwave drives`. |
+# | `… has no [motor] and no [load]` | Add the parts, as above, or begin from a drive (`strainwave list drives`). |
 # | `there is no C++20 compiler …` | `pip install 'strainwave[compiler]'`, or export sources: `--platform source` of an FMU. |
 # | `drive.control = … must be sampled` | Put the law into `sw.control.Sampled`, and simulate it so too. |
 # | firmware gives other numbers | `-ffp-contract=off` is missing, or the period differs from that in the header. |
@@ -193,6 +193,6 @@ axes.legend()
 #
 # ## Where to go on
 #
-# * [From a measurement to another program](../how-to/exports.md): all exports, and what each loses.
-# * [MuJoCo and URDF](../how-to/mujoco.md), [FMU](../how-to/fmu.md), [firmware](../how-to/firmware.md).
-# * [Compensate torsion, friction and kinematic error](../how-to/compensate.md).
+# * [From a measurement to another program](../../docs/how-to/exports.md): all exports, and what each loses.
+# * [MuJoCo and URDF](../../docs/how-to/mujoco.md), [FMU](../../docs/how-to/fmu.md), [firmware](../../docs/how-to/firmware.md).
+# * [Compensate torsion, friction and kinematic error](../../docs/how-to/compensate.md).

@@ -38,7 +38,7 @@ made = make("09_fault_data_plan.toml", "data", workers=1)
 print(*sorted(path.name for path in made.iterdir()), sep="\n")
 
 # %% [markdown]
-# On the command line: `strainwave dataset 09_fault_data_plan.toml --out data`. `--dry-run` instead of `--out` measures what
+# On the command line: `strainwave dataset make 09_fault_data_plan.toml --out data`. `strainwave dataset estimate` measures what
 # a plan takes. `data/card.md` describes the set, `data/manifest.json` each column.
 #
 # ## Look at the rows
@@ -115,8 +115,8 @@ axes.legend(loc="lower right")
 # The detector gains little over the one feature that physics names, order 2. The own baseline removes what differs between
 # units, and gains most.
 #
-# `strainwave diagnose` makes this comparison with statistics: each order against the baseline recordings of the joint, at a
-# stated rate of false alarms. Its functions run here on the recorded signals of ten test units.
+# `strainwave diagnose joint` makes this comparison with statistics: each order against the baseline recordings of the joint, at
+# a stated rate of false alarms. Its functions run here on the recorded signals of ten test units.
 
 # %%
 signals = pd.read_parquet("data/samples").set_index("member")
@@ -177,6 +177,6 @@ for name, values in areas.items():
 #
 # ## Where to go on
 #
-# * [Data sets for learning](../how-to/datasets.md): plans, splits, many machines.
-# * [Diagnose a gear from its motor current](../how-to/diagnose.md): the comparison with a baseline on your recordings.
-# * [Detection probability of a diagnosis](../validation/detection-benchmark.md): three faults over their severity.
+# * [Data sets for learning](../../docs/how-to/datasets.md): plans, splits, many machines.
+# * [Diagnose a gear from its motor current](../../docs/how-to/diagnose.md): the comparison with a baseline on your recordings.
+# * [Detection probability of a diagnosis](../../docs/validation/detection-benchmark.md): three faults over their severity.

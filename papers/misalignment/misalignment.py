@@ -225,13 +225,15 @@ def _spectra(ramp: ActuatorRamp, runs: Mapping[float, sw.Recording], name: str) 
         run = ramp.settled(runs[tilt])
         values = run["output_angle"] - run["command"] if name == "output_angle" else run[name]
         columns = {"input_angle": run["input_angle"], name: values}
-        found.append(sw.order_spectrum(sw.Recording(columns, {each: run.unit(each) for each in columns}), name, MAX_ORDER))
+        found.append(
+            sw.orders.order_spectrum(sw.Recording(columns, {each: run.unit(each) for each in columns}), name, MAX_ORDER)
+        )
     return found[0], found[1]
 
 
 def share_of_whole_orders(ramp: ActuatorRamp, runs: Mapping[float, sw.Recording], name: str) -> float:
     """Return the share of a difference's power at whole orders, or so close that the load over the stroke explains it [1]."""
-    spectrum = sw.order_spectrum(difference(ramp, runs, SHOWN_TILT, name), name, MAX_ORDER)
+    spectrum = sw.orders.order_spectrum(difference(ramp, runs, SHOWN_TILT, name), name, MAX_ORDER)
     order, power = spectrum["order"], spectrum["amplitude"] ** 2
     counted = order > MIN_ORDER
     near = np.abs(order - np.round(order)) <= WHOLE_ORDER_TOLERANCE
@@ -279,7 +281,7 @@ def _passed(ramp: ActuatorRamp, runs: sw.Ensemble, place: int, gain: float) -> I
     }
     turning = sw.Recording(columns, dict.fromkeys(columns, "rad"))
     asked = (2.0, 4.0)
-    error, output = (sw.order_amplitudes(turning, name, asked).amplitude for name in ("error", "output"))
+    error, output = (sw.orders.order_amplitudes(turning, name, asked).amplitude for name in ("error", "output"))
     for order, there, put_in in zip(asked, output, error, strict=True):
         yield {
             "duration": ramp.duration,

@@ -67,8 +67,8 @@ class CommandExperiment:
     title: str
     command: sw.scenario.Scenario
     runs: Mapping[str, sw.Run]
-    tracking: Mapping[str, sw.Agreement]
-    between: Mapping[str, sw.Agreement]
+    tracking: Mapping[str, sw.analysis.Agreement]
+    between: Mapping[str, sw.analysis.Agreement]
     settling: Mapping[str, tuple[float, ...]]
 
 
@@ -85,7 +85,7 @@ class MeasuredRun:
 
     recording: sw.Recording
     runs: Mapping[str, sw.Run]
-    agreement: Mapping[str, sw.Agreement]
+    agreement: Mapping[str, sw.analysis.Agreement]
     beyond: tuple[float, float] | None
 
 
@@ -124,12 +124,12 @@ class PositionControl:
     @property
     def control_suffices_to(self) -> float:
         """The stroke [rad] beyond which the output differs by more than the least error of Table 4; inf if it never does."""
-        return sw.stroke_within(self.under_control, min(rms for rms, _, _ in TABLE_4.values()))
+        return sw.analysis.stroke_within(self.under_control, min(rms for rms, _, _ in TABLE_4.values()))
 
     @property
     def control_within_fit_to(self) -> float:
         """The stroke [rad] beyond which the output differs by more than the error of the fit does; inf if it never does."""
-        return sw.stroke_within(self.under_control, self.under_control["fit_error"])
+        return sw.analysis.stroke_within(self.under_control, self.under_control["fit_error"])
 
 
 def position_control(measured: str | Path | None = None) -> PositionControl:
@@ -143,7 +143,7 @@ def position_control(measured: str | Path | None = None) -> PositionControl:
     """
     sets = {model: sw.GearSet.read(name) for model, name in SETS.items()}
     drives = {model: gear_set.drive for model, gear_set in sets.items()}
-    command = None if measured is None else sw.MeasuredCommand.read(measured)
+    command = None if measured is None else sw.analysis.MeasuredCommand.read(measured)
     experiments = tuple(_experiment(name, *each, drives) for name, each in commands().items())
     pulses = {voltage: moves_by_pulse(drives, voltage) for voltage in VOLTAGES}
     limits = {voltage: pulse_limit(drives, voltage, each) for voltage, each in pulses.items()}
@@ -190,20 +190,20 @@ def _experiment(name: str, title: str, command: sw.scenario.Scenario, drives: Ma
     )
 
 
-def _tracking(run: sw.Recording) -> sw.Agreement:
+def _tracking(run: sw.Recording) -> sw.analysis.Agreement:
     """Return the agreement of the output angle with its command."""
     asked = sw.Recording({"time": run.time, "output_angle": run["command"]}, {"time": "s", "output_angle": run.unit("command")})
     return sw.compare(asked, run.select(["time", "output_angle"]))[0]
 
 
-def _agreement(first: sw.Recording, second: sw.Recording, names: tuple[str, ...]) -> dict[str, sw.Agreement]:
+def _agreement(first: sw.Recording, second: sw.Recording, names: tuple[str, ...]) -> dict[str, sw.analysis.Agreement]:
     return {each.name: each for each in sw.compare(first.select(["time", *names]), second)}
 
 
 def _settling(run: sw.Recording, command: sw.scenario.Scenario) -> tuple[float, ...]:
     """After each jump of the command, until the next."""
     jumps = [*command.breaks.tolist(), command.duration]
-    return tuple(sw.settling_time(run.between(*ends), band=SETTLING_BAND) for ends in pairwise(jumps))
+    return tuple(sw.analysis.settling_time(run.between(*ends), band=SETTLING_BAND) for ends in pairwise(jumps))
 
 
 # ---- Strokes ---------------------------------------------------------------------------------------------------------
@@ -214,14 +214,14 @@ def moves_under_control(drives: Mapping[str, sw.Drive]) -> sw.Recording:
     models = _models(drives, STROKES[0])
 
     def apart(first: str, second: str) -> np.ndarray:
-        return sw.strokes_apart(models[first], models[second], STROKES)["output_angle"]
+        return sw.analysis.strokes_apart(models[first], models[second], STROKES)["output_angle"]
 
     full = drives[FULL]
     averaged = [
-        sw.strokes_apart(full, with_coulomb(drives[SIMPLIFIED], average(full, stroke)), [stroke])["output_angle"][0]
+        sw.analysis.strokes_apart(full, with_coulomb(drives[SIMPLIFIED], average(full, stroke)), [stroke])["output_angle"][0]
         for stroke in STROKES
     ]
-    found = sw.strokes_apart(full, drives[SIMPLIFIED], STROKES)
+    found = sw.analysis.strokes_apart(full, drives[SIMPLIFIED], STROKES)
     found = found.with_column("without_periodic", apart("without_periodic", SIMPLIFIED), "rad")
     found = found.with_column("averaged", np.array(averaged), "rad")
     wrong = np.maximum(apart("stronger", SIMPLIFIED), apart("weaker", SIMPLIFIED))
@@ -337,7 +337,7 @@ def _columns(rows: list[dict[str, float]], units: Mapping[str, str]) -> sw.Recor
 # ---- A measured run --------------------------------------------------------------------------------------------------
 
 
-def _measured(command: sw.MeasuredCommand, drives: Mapping[str, sw.Drive]) -> MeasuredRun:
+def _measured(command: sw.analysis.MeasuredCommand, drives: Mapping[str, sw.Drive]) -> MeasuredRun:
     runs = {model: command.run(drive) for model, drive in drives.items()}
     agreement = {model: command.agreement(drive) for model, drive in drives.items()}
     return MeasuredRun(command.recording, runs, agreement, _beyond(drives[FULL], runs[FULL]["input_angle"]))

@@ -14,7 +14,8 @@ from strainwave import Drive, _core
 from strainwave.messages import listed, quoted, shortened
 
 Model = TypeVar("Model")
-MIN_RATIO, MAX_RATIO = 0.1, 1e4  # size of the ratio of a gear
+MIN_RATIO: float = 0.1  # size of the ratio of a gear
+MAX_RATIO: float = 1e4
 MIN_PROBABILITY = 1e-12  # of an error: no measurement shows less
 
 

@@ -130,7 +130,7 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     options = r"^(speed_limit|lowest_speed|torque_limit|rated_torque|load(?= is needed))\b"
     text = re.sub(options, lambda found: "--" + found[1].replace("_", "-"), text)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
-    return text.replace(listing, "`strainwave gears` lists all gears, `strainwave drives` all drives")
+    return text.replace(listing, "`strainwave list gears` lists all gears, `strainwave list drives` all drives")
 
 
 def pairs(option: str, values: Sequence[str] | None, known: set[str]) -> dict[str, str]:

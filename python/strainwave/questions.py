@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from strainwave.messages import printable
@@ -66,7 +66,8 @@ class Answer:
         """Return this and an answer that was given before, as one."""
         given = {**first.given, **self.given}
         given |= {name: {**first.given[name], **self.given[name]} for name in TABLES if {*first.given} & {*self.given} & {name}}
-        return Answer(f"{first.label}, {self.label}", given, {**first.numbers, **self.numbers})
+        label = ", ".join(filter(None, (first.label, self.label)))
+        return replace(self, label=label, given=given, numbers={**first.numbers, **self.numbers})
 
     def _written(self, name: str, value: object) -> str:
         """Return a value of an option, with the word in place of a number that only a person knows."""

@@ -9,6 +9,26 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from markupsafe import Markup
 
+__all__ = [
+    "ARCMIN_PER_DEGREE",
+    "ARCMIN_PER_RADIAN",
+    "ARCSEC_PER_DEGREE",
+    "ZERO_CELSIUS",
+    "breakable",
+    "fixed",
+    "interval",
+    "number",
+    "plain_symbols",
+    "power_of_ten",
+    "prefix_power",
+    "prefixed",
+    "quantity",
+    "symbols",
+    "uncertain",
+    "uncertain_quantity",
+    "unit",
+]
+
 ARCMIN_PER_RADIAN = 180.0 * 60.0 / math.pi
 ARCMIN_PER_DEGREE = 60.0
 ARCSEC_PER_DEGREE = 3600.0
@@ -100,6 +120,15 @@ def quantity(value: float, of: str, digits: int = 3) -> str:
     return f"{number(value / 10.0**power, digits)} {prefixed(of, power)}".strip()
 
 
+def percent(share: float) -> str:
+    """Return a share in print, to two digits.
+
+    >>> percent(0.0484)
+    '4.8 %'
+    """
+    return f"{number(100.0 * share, 2)} %"
+
+
 def symbols(text: str) -> Markup:
     """Return a text as HTML, escaped, with the symbols in it set as such.
 
@@ -187,3 +216,7 @@ def power_of_ten(power: int) -> str:
     '10⁻³'
     """
     return f"10{str(power).translate(_SUPERSCRIPTS)}"
+
+
+def __dir__() -> list[str]:
+    return __all__

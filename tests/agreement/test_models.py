@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, reject, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, reject, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.simulation.excitation import Excitation
@@ -180,6 +179,6 @@ def test_a_sampled_drive_that_begins_in_motion_is_in_a_pack_and_in_dual_numbers_
     command = sw.scenario.sine(0.02, 20.0, 0.2)
     alone = sw.simulate(drive, command, **course)
     many = sw.simulate_many(drive, command, {"gear.damping": [5.0, 6.0]}, record=list(outputs(drive)), **course)
-    dual = sw.derivatives(drive, command, ["gear.damping"], **course).run
+    dual = sw.analysis.derivatives(drive, command, ["gear.damping"], **course).run
     for found in (many.member(0), dual):
         assert [name for name in outputs(drive) if not np.array_equal(found[name], alone[name])] == []

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 class Instant:
     """Inputs of a compensator at an instant, and the sum of the requests before it."""
 
-    seen: sw.Observation
+    seen: sw.simulation.Observation
     ratio: float
     period: float
     lead: float = 0.0
@@ -356,7 +356,7 @@ class Compensated:
     ratio: float
     period: float
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         now = Instant(seen, self.ratio, self.period)
         for compensator in self.compensators:
             compensator.add(now)

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.compensation import BristleObserver, ModelFeedforward
 
 from tests.compensation.ideal import KINEMATICS, LIGHT, RATIO, state
@@ -173,7 +172,7 @@ def test_over_compensated_friction_drives_a_shaft_by_itself(share: float) -> Non
     start = free.rest().replace(
         {"input_speed": speed, "output_speed": speed / RATIO, "control.compensation.observer.sense": 1.0}
     )
-    reached = sw.simulate(free, sw.scenario.constant(0.0, duration), sample=1e-2, start=start)["input_speed"][-1]
+    reached = sw.simulate(free, sw.scenario.constant(0.0, duration), sample=1e-2, initial=start)["input_speed"][-1]
     wanted = max(speed + (share * LEVEL.coulomb - true) * duration / (INERTIA + LIGHT.inertia / RATIO**2), 0.0)
     assert reached == pytest.approx(wanted, rel=1e-3, abs=1e-9)
 

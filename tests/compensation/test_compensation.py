@@ -11,8 +11,7 @@ from strainwave import _core, compensation
 
 from tests.compensation import by_hand
 from tests.compensation.ideal import KINEMATICS, RATIO
-from tests.control.discrete import CURRENT
-from tests.control.discrete import DC as WOUND
+from tests.control.discrete import CURRENT, DC as WOUND
 
 PERIOD, DURATION = 1e-3, 1.2  # s
 COMMAND = sw.scenario.sine(0.15, 1.3, DURATION) + sw.scenario.ramp(0.1, DURATION)

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.compensation import FrictionScale, ModelFeedforward
 
 from tests.compensation.ideal import KINEMATICS, LIGHT, RATIO, state
@@ -112,7 +111,7 @@ def test_by_the_speed_alone_a_motion_of_one_sense_does_not_determine_it() -> Non
     one = drive(FrictionScale(gain=gain, position_gain=0.0), friction=DRY)
     speed = {"input_speed": -30.0, "output_speed": 0.3}
     start = one.rest().replace({**speed, "control.compensation.feedforward.sense": -1.0})
-    found = sw.simulate(one, sw.scenario.ramp(0.3, 6.0), sample=1e-2, start=start)
+    found = sw.simulate(one, sw.scenario.ramp(0.3, 6.0), sample=1e-2, initial=start)
     stiffness = 20.0 * DAMPING
     wanted = 1.0 + (TRUE - 1.0) * gain * level**2 / (stiffness + gain * level**2)
     assert scale(found) == pytest.approx(wanted, abs=2e-3)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave.compensation import IterativeLearning, NoLearning
 
@@ -72,7 +71,7 @@ def test_a_constant_lost_motion_is_learnt_at_its_rate_per_pass(gain: float) -> N
 def test_it_learns_the_lost_motion_that_the_loop_of_the_gear_has() -> None:
     """A gear with hysteresis, dragged by friction: both branches of the loop between both torques, at every angle."""
     one = drive(learner(gain=20.0), hysteresis=LOOP)
-    lost = sw.lost_motion(one.gear)
+    lost = sw.tuning.lost_motion(one.gear)
     found = widths(sw.simulate(one, passes(24), sample=0.01).end)[INNER]
     assert found == pytest.approx(lost.extent, rel=0.01)
     rigid = 2.0 * BRAKE / 2e4
@@ -114,7 +113,7 @@ def test_smoothing_takes_a_wave_over_the_cells_away_at_its_rate(mode: int) -> No
     one = drive(learner(gain=0.0, smoothing=sigma))
     wave = 1e-5 * np.cos(np.pi * mode * (np.arange(CELLS) + 0.5) / CELLS)
     start = one.rest().replace({f"control.compensation.learning.forward[{j}]": value for j, value in enumerate(wave)})
-    run = sw.simulate(one, passes(2 * count, END), sample=0.01, start=start)
+    run = sw.simulate(one, passes(2 * count, END), sample=0.01, initial=start)
     forward, _ = tables(run.end)
     rate = sigma * WIDTH / SPEED * (1.0 - np.cos(np.pi * mode / CELLS))
     assert forward[INNER] == pytest.approx(wave[INNER] * np.exp(-rate * count), abs=0.03e-5 * (mode > 0) + 1e-12)
@@ -141,7 +140,7 @@ def test_within_its_guard_it_does_not_diverge() -> None:
     """The cells pass at v / h = 31 Hz at most, where the loop of (s + 100)^2 lags by two times 45 degrees below 100 rad/s."""
     run = sw.simulate(drive(learner(gain=1e3, lag=0.0), hysteresis=LOOP), passes(60), sample=0.01)
     forward, backward = tables(run.end)
-    extent = sw.lost_motion(drive(NoLearning(), hysteresis=LOOP).gear).extent
+    extent = sw.tuning.lost_motion(drive(NoLearning(), hysteresis=LOOP).gear).extent
     assert max(np.abs(forward).max(), np.abs(backward).max()) < 1.5 * extent
 
 

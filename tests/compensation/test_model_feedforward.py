@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.compensation import ModelFeedforward

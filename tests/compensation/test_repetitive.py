@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave.compensation import Repetitive
 
@@ -75,7 +74,7 @@ def test_what_it_holds_is_interpolated_between_the_cells() -> None:
     table = 1e-4 * np.random.default_rng(3).uniform(-1.0, 1.0, CELLS)
     start = drive.rest().replace({f"control.compensation.learning.value[{j}]": value for j, value in enumerate(table)})
     speed = -0.5
-    run = sw.simulate(drive, sw.scenario.ramp(speed / RATIO, 15.0), sample=PERIOD, start=start)
+    run = sw.simulate(drive, sw.scenario.ramp(speed / RATIO, 15.0), sample=PERIOD, initial=start)
     place = np.mod(run["input_angle"] * CELLS / (2.0 * np.pi), CELLS)
     wanted = np.interp(place, np.arange(CELLS + 1), np.append(table, table[0]))
     lead = run["output_angle"] - run["command"]

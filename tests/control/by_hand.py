@@ -8,7 +8,7 @@ import strainwave as sw
 from tests.control.discrete import RATIO
 
 
-def within(seen: sw.Observation, limit: float) -> tuple[float, float]:
+def within(seen: sw.simulation.Observation, limit: float) -> tuple[float, float]:
     """The least and the largest actuation that law and motor allow."""
     return max(seen.low, -limit), min(seen.high, limit)
 
@@ -26,7 +26,7 @@ class PID:
     def __init__(self, law: sw.control.PID, period: float, ratio: float = RATIO) -> None:
         self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law = self.law
         on_output = law.feedback == "output"
         error = self.ratio * seen.command - (self.ratio * seen.output_angle if on_output else seen.input_angle)
@@ -41,7 +41,7 @@ class PI:
     def __init__(self, law: sw.control.PI, period: float, ratio: float = RATIO) -> None:
         self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law = self.law
         speed = self.ratio * seen.output_speed if law.feedback == "output" else seen.input_speed
         error = self.ratio * seen.command - speed
@@ -55,7 +55,7 @@ class PositionSpeed:
     def __init__(self, law: sw.control.PositionSpeed, period: float, ratio: float = RATIO) -> None:
         self.law, self.period, self.ratio, self.integral = law, period, ratio, 0.0
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law, commanded = self.law, self.ratio * seen.command_rate
         angle = self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle
         wanted = law.position_gain * (self.ratio * seen.command - angle) + law.speed_feedforward * commanded
@@ -71,7 +71,7 @@ class Cascade:
     def __init__(self, law: sw.control.Cascade, period: float, ratio: float = RATIO) -> None:
         self.law, self.period, self.ratio, self.speed, self.current = law, period, ratio, 0.0, 0.0
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law, commanded = self.law, self.ratio * seen.command_rate
         angle = self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle
         wanted = law.position_gain * (self.ratio * seen.command - angle) + law.speed_feedforward * commanded
@@ -96,7 +96,7 @@ class LeadLag:
         self.law, self.ratio, self.first, self.second = law, ratio, 0.0, 0.0
         self.kept = np.exp(-period / law.lead_denominator), np.exp(-period / law.lag_denominator)
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law = self.law
         error = self.ratio * seen.command - (self.ratio * seen.output_angle if law.feedback == "output" else seen.input_angle)
         lead = self.first + law.lead_numerator / law.lead_denominator * (error - self.first)
@@ -112,7 +112,7 @@ class StateFeedback:
     def __init__(self, law: sw.control.StateFeedback, _period: float = 0.0, ratio: float = RATIO) -> None:
         self.law, self.ratio = law, ratio
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law = self.law
         asked = law.input_angle * (self.ratio * seen.command - seen.input_angle)
         asked += law.input_speed * (self.ratio * seen.command_rate - seen.input_speed)
@@ -133,7 +133,7 @@ class StateSpace:
         self.c, self.d, self.tracking = np.array(law.C), np.array(law.D), np.array(law.tracking or states * [0.0])
         self.x = np.zeros(states)
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         errors = [self.ratio * seen.command - seen.input_angle, self.ratio * seen.command_rate - seen.input_speed]
         errors += [seen.command - seen.output_angle, seen.command_rate - seen.output_speed]
         y = np.array([*errors, seen.current, seen.torque, seen.command, seen.command_rate])[: len(self.d)]
@@ -176,7 +176,7 @@ class FeedbackLinearisation:
     def __init__(self, law: sw.control.FeedbackLinearisation, period: float, ratio: float = RATIO) -> None:
         self.law, self.ratio, self.lags = law, ratio, Lags(law.reference_time, period)
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law, w = self.law, self.law.bandwidth
         k, inertia = law.gear.stiffness.k, law.load.inertia
         error, slope = error_of(law.gear.kinematic_error, seen.input_angle)
@@ -199,7 +199,7 @@ class KinematicErrorTracking:
     def __init__(self, law: sw.control.KinematicErrorTracking, period: float, ratio: float = RATIO) -> None:
         self.law, self.ratio, self.lags = law, ratio, Lags(law.reference_time, period)
 
-    def __call__(self, seen: sw.Observation) -> float:
+    def __call__(self, seen: sw.simulation.Observation) -> float:
         law, rotor = self.law, self.law.motor_inertia + self.law.gear.input_inertia
         error, slope = error_of(law.gear.kinematic_error, seen.input_angle)
         bend = bend_of(law.gear.kinematic_error, seen.input_angle)

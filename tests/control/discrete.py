@@ -23,7 +23,7 @@ COMMAND = sw.scenario.sine(0.3, 4.0, DURATION) + sw.scenario.ramp(0.8, DURATION)
 TIMES = [(1e-3, 0.0, 5e-6), (1e-3, 3e-4, 5e-6), (7.3e-4, 2.1e-4, 5.3e-6), (1e-3, 1e-3, 5e-6)]
 
 
-Law = Callable[[sw.Observation], float]
+Law = Callable[[sw.simulation.Observation], float]
 
 
 def drive(control: object, motor: object = DC, **parts: object) -> sw.Drive:
@@ -86,11 +86,11 @@ class Plant:
             case _:
                 return 0.0
 
-    def seen(self, x: Array, actuation: float, time: float, command: sw.scenario.Scenario) -> sw.Observation:
+    def seen(self, x: Array, actuation: float, time: float, command: sw.scenario.Scenario) -> sw.simulation.Observation:
         """All that is measured, under the actuation that is held."""
         torque = SPRING * (x[1] / RATIO - x[3]) + DAMPING * (x[2] / RATIO - x[4])
         asked = float(command.value(time)), float(command.rate(time))
-        return sw.Observation(time, *asked, *x[1:], self.current(x, actuation), float(torque), -np.inf, np.inf)
+        return sw.simulation.Observation(time, *asked, *x[1:], self.current(x, actuation), float(torque), -np.inf, np.inf)
 
 
 def simulated(motor: object, law: Law, period: float, delay: float, command: sw.scenario.Scenario) -> dict[str, Array]:

@@ -8,8 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
 from tests.support.geared import RATIO, geared
@@ -68,7 +67,7 @@ def test_packs_and_derivatives_take_the_same_steps() -> None:
     alone = sw.simulate(one, COMMAND, DT, sample=PERIOD, method="exponential")
     many = sw.simulate_many(one, COMMAND, {"load.inertia": [one.load.inertia] * 3}, DT, sample=PERIOD)
     assert all(np.array_equal(row, alone["output_angle"]) for row in many["output_angle"])
-    found = sw.derivatives(one, COMMAND, ["control.law.proportional"], DT, sample=PERIOD)
+    found = sw.analysis.derivatives(one, COMMAND, ["control.law.proportional"], DT, sample=PERIOD)
     assert np.array_equal(found.run["output_angle"], alone["output_angle"])
     near = [
         sw.simulate(one.replace({"control.law.proportional": 2.0 + by}), COMMAND, DT, sample=PERIOD)["output_angle"]
@@ -84,7 +83,7 @@ def test_a_run_goes_on_where_another_ended(at: float) -> None:
     level = sw.scenario.constant(0.2, 0.2)
     whole = sw.simulate(one, level, 1e-4)
     first = sw.simulate(one, sw.scenario.constant(0.2, at), 1e-4)
-    second = sw.simulate(one, sw.scenario.constant(0.2, 0.2 - at), 1e-4, start=first.end)
+    second = sw.simulate(one, sw.scenario.constant(0.2, 0.2 - at), 1e-4, initial=first.end)
     assert second.end["output_speed"] == pytest.approx(whole.end["output_speed"], abs=1e-7)
     assert second["output_angle"][-1] == pytest.approx(whole["output_angle"][-1], abs=1e-9)
 
@@ -137,7 +136,7 @@ def test_time_is_no_number_of_a_run(path: str) -> None:
     with pytest.raises(ValueError, match="must be that of the drive for all members"):
         sw.simulate_many(drive(), COMMAND, {path: [1e-3, 9e-4]})
     with pytest.raises(ValueError, match=f"no derivative by {path}"):
-        sw.derivatives(drive(), COMMAND, [path])
+        sw.analysis.derivatives(drive(), COMMAND, [path])
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the memory of a process is limited as Linux does it")
@@ -146,7 +145,7 @@ def test_time_is_no_number_of_a_run(path: str) -> None:
     [
         lambda long: sw.simulate(drive(), long, dt=1.0),
         lambda long: sw.simulate_adaptively(drive(), long, max_steps=10**9, sample=1e3),
-        lambda long: sw.derivatives(drive(), long, ["load.inertia"], dt=1.0),
+        lambda long: sw.analysis.derivatives(drive(), long, ["load.inertia"], dt=1.0),
         lambda long: sw.simulate_many(drive(), long, {"load.inertia": [0.1]}, dt=1.0),
         lambda long: sw.simulate_controlled(
             drive().replace(control=sw.control.OpenLoop()), lambda _: 0.0, long, dt=1.0, period=1e-3, sample=1e3

@@ -4,9 +4,9 @@ Units are drawn from what the catalogue leaves open of a CSG-25-100: stiffness, 
 and torque constant. Each has its own baseline of six days; friction and load differ from day to day. Three faults grow in each
 unit: a misalignment, a crack and a bearing. Load, noise and length of the record vary.
 
-Detectors: the comparison of `strainwave diagnose` with its own stated false-alarm rate, at the orders that it names and at that
-of the bearing, which is asked for; under the first condition also the whole diagnosis, which searches for lines itself and is
-asked for no order; and two simple ones, the relative change of the rms of the current, and of its rms without the mean.
+Detectors: the comparison of `strainwave diagnose joint` with its own stated false-alarm rate, at the orders that it names and
+at that of the bearing, which is asked for; under the first condition also the whole diagnosis, which searches for lines itself
+and is asked for no order; and two simple ones, the relative change of the rms of the current, and of its rms without the mean.
 Thresholds of these are what one in a thousand healthy records of the training units exceeds under the training conditions.
 Reported are records of other units, under the training conditions and under others. Intervals are exact, of 95 %. Each unit has
 each fault once.
@@ -329,7 +329,7 @@ def severity_cell(result: Result, fault: str, detector: str) -> str:
 def planned(case: Case) -> float:
     """Return the severity of a misalignment whose order 4 is the planned detection limit, by noise alone."""
     drive = gear_set().drive.replace(load=sw.loads.Inertia(inertia=0.1))
-    limit = sw.detection_limit(
+    limit = sw.diagnose.detection_limit(
         drive, speed=case.condition.speed, load_torque=case.condition.load, duration=case.length, sample_rate=1.0 / SAMPLE,
         noise=case.noise, order=4.0, false_alarm=FALSE_ALARM, tests=4,
     )  # fmt: skip

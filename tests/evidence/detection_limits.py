@@ -8,7 +8,7 @@ coloured noise is added, four orders are tested together, and alarms are counted
 
 Bound: standard deviation of the amplitude found over sigma_i sqrt(2 / M).
 
-Tables: each limit that docs/how-to/detection-limit.md prints, computed again.
+Tables: each limit that docs/how-to/diagnose.md prints, computed again.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy import fft
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.detection_limit import DetectionLimit, detection_limit
 from strainwave.diagnose.motion import SampledMotion, motion_of
 from strainwave.diagnose.regression import regressions
+from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
 from strainwave.diagnose.steady_run import COLUMN, RecordedOrder, SteadyRun
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ FACTORS = (0.8, 1.0, 1.2)  # of the planned limit
 ORDERS = (1.0, 2.0, 4.0, 6.28)
 COLOURS = ("white", "first order", "pink", "brown below 2 Hz")
 BLOCK = 500  # draws at once
-PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "detection-limit.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "diagnose.md"
 PAGE_RECORD = {"speed": 10.0, "duration": 20.0, "sample_rate": 500.0, "noise": 0.05, "order": 2.0}  # of its first example
 PAGE_LOAD = 20.0  # N.m, if a table does not have another one
 PAGE_HEADS = {"load [N·m]": "load_torque", "speed of the input [rad/s]": "speed", "duration [s]": "duration"}
@@ -211,7 +211,7 @@ class PrintedLimit:
 
     def computed(self) -> DetectionLimit:
         """Return the limit of the drive of the page's first example."""
-        example = re.search(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+        example = re.search(r"### Plan a recording\n.*?```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
         assert example is not None, f"{PAGE.name} has no example"
         names = dict[str, object]()
         exec(example[1].partition("record =")[0], names)

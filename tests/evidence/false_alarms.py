@@ -2,8 +2,8 @@
 
 Each healthy unit has its own kinematic error, stiffness, friction, inertia and load. Its recordings are of several days: the
 friction differs with the temperature, the load with what is carried, the kinematic error by `--day`, and the noise is another
-one. Some days are the baseline, the others are diagnosed as `strainwave diagnose RECORDING --baseline FOLDER --gear FILE` does
-it, the blind search included. Every alarm is false. Runs of one unit share a baseline, so that their alarms are not
+one. Some days are the baseline, the others are diagnosed as `strainwave diagnose joint RECORDING --baseline FOLDER --gear FILE`
+does it, the blind search included. Every alarm is false. Runs of one unit share a baseline, so that their alarms are not
 independent. Intervals are therefore those of the share of units with an alarm.
 
 The spread of changes over their stated standard deviation is 1 if that is right, and less if it is larger than need be.

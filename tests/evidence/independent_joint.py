@@ -26,8 +26,7 @@ from strainwave.tuning.cascade import Plant
 from strainwave.tuning.compensate import goal_of
 from strainwave.tuning.loops import sharpest
 
-from tests.evidence.rig import RIG
-from tests.evidence.rig import START as START_SET
+from tests.evidence.rig import RIG, START as START_SET
 from tests.python.command import strainwave
 from tests.support.cplusplus import compiler
 

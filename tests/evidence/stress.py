@@ -259,8 +259,8 @@ def beside_others(
 def with_derivatives(drive: sw.Drive, paths: list[str], volts: Any, dt: float, course: dict[str, Any]) -> None:
     """Raises AssertionError if derivatives change the run, or contradict each other."""
 
-    def differentiated() -> sw.Derivatives:
-        return sw.derivatives(drive, volts, paths, dt, **course)
+    def differentiated() -> sw.analysis.Derivatives:
+        return sw.analysis.derivatives(drive, volts, paths, dt, **course)
 
     try:
         run = sw.simulate(drive, volts, dt, method="exponential", **course)

@@ -71,7 +71,7 @@ def results(drive: Any, wave: Any, dt: float) -> Iterator[bytes]:
     runs = [sw.simulate(drive, wave, dt, method=method) for method in ("exponential", "moreau_jean", "rosenbrock")]
     runs.append(sw.simulate_adaptively(drive, wave))
     runs.append(sw.simulate_many(drive, wave, members, dt, sample=10.0 * dt))
-    yield sw.derivatives(drive, wave, [path for path, _ in parameters], dt, sample=10.0 * dt).values.tobytes()
+    yield sw.analysis.derivatives(drive, wave, [path for path, _ in parameters], dt, sample=10.0 * dt).values.tobytes()
     for run in runs:
         yield from (column.tobytes() for column in run.columns.values())
 

@@ -26,7 +26,7 @@ EVERY = pytest.mark.parametrize("motor", [PMSM, DC, BRUSHLESS], ids=["pmsm", "dc
 
 
 def faulty(motor: Any, *faults: Any) -> Any:
-    return sw.with_faults(geared(motor=motor, load=sw.loads.Inertia(inertia=0.1)), faults).motor
+    return sw.dataset.with_faults(geared(motor=motor, load=sw.loads.Inertia(inertia=0.1)), faults).motor
 
 
 def orders(motor: Any, voltage: float, speed: float, steps: int = 2400) -> Any:
@@ -105,7 +105,7 @@ def test_a_source_of_torque_has_no_magnets_to_lose() -> None:
 def test_cogging_of_a_catalogue_actuator_shows_in_its_current() -> None:
     """A brushless motor: no other part of the drive has changed."""
     healthy = sw.load("tilt-actuator")
-    drive = sw.with_faults(healthy, [sw.fault.Cogging(torque=4e-3)])
+    drive = sw.dataset.with_faults(healthy, [sw.fault.Cogging(torque=4e-3)])
     assert drive == healthy.replace({"motor.cogging_torque": 4e-3})
     runs = [sw.simulate(one, sw.scenario.ramp(0.2, 0.3))["current"] for one in (drive, healthy)]
     assert np.abs(runs[0] - runs[1]).max() > 1e-2

@@ -34,7 +34,7 @@ def test_the_waves_are_the_fourier_integrals_of_the_pulse(width: float) -> None:
 def test_the_stiffness_falls_where_a_lobe_stands_over_the_crack_and_nowhere_else() -> None:
     crack = sw.fault.FlexsplineCrack(depth=0.4, width=1.2, angle=0.5, waves=7)
     gear = sw.Gear(kinematics=sw.kinematics.StrainWave(fixed="flexspline"))
-    law = sw.with_faults(sw.Drive(gear=gear), [crack]).gear.stiffness_variation
+    law = sw.dataset.with_faults(sw.Drive(gear=gear), [crack]).gear.stiffness_variation
     assert law.factor([0.5, 0.5 + math.pi]) == pytest.approx(0.6, abs=2e-3)
     assert law.factor([0.5 + math.pi / 2, 0.5 + 0.8]) == pytest.approx(1.0, abs=2e-3)
 
@@ -49,4 +49,4 @@ def test_a_gear_holds_eight_waves_of_cracks() -> None:
     drive = sw.Drive(gear=sw.Gear(kinematics=sw.kinematics.StrainWave()))
     bearing = sw.fault.WaveGeneratorBearing(friction_depth=0.0, stiffness_depth=0.1, waves=1)
     with pytest.raises(ValueError, match=r"already has 8 waves and holds no more; give the fault fewer waves"):
-        sw.with_faults(drive, [sw.fault.FlexsplineCrack(waves=7), bearing])
+        sw.dataset.with_faults(drive, [sw.fault.FlexsplineCrack(waves=7), bearing])

@@ -8,7 +8,7 @@ import strainwave as sw
 
 def test_plays_in_series_add() -> None:
     gear = sw.Gear(stiffness=sw.stiffness.Backlash(law=sw.stiffness.Linear(k=1e4), clearance=1e-4))
-    loose = sw.with_faults(
+    loose = sw.dataset.with_faults(
         sw.Drive(gear=gear), [sw.fault.LinkagePlay(play=4e-4, severity=0.5), sw.fault.LinkagePlay(play=1e-4)]
     )
     assert loose.gear.stiffness.clearance == pytest.approx(4e-4, rel=1e-12)

@@ -31,8 +31,10 @@ HEALTHY = sw.Drive(
 def lines(fault: Any, orders: list[float], load: float = LOAD) -> list[float]:
     """Amplitudes [A] in the current at constant speed, once the load has settled."""
     duration = 2.0 + TURNS * 6.2832 / SPEED
-    run = sw.simulate(sw.with_faults(HEALTHY, [fault]), sw.scenario.constant(-SPEED / 100.0, duration), load_torque=load)
-    return [float(each) for each in sw.order_amplitudes(run.between(1.0, duration), "current", orders).amplitude]
+    run = sw.simulate(
+        sw.dataset.with_faults(HEALTHY, [fault]), sw.scenario.constant(-SPEED / 100.0, duration), load_torque=load
+    )
+    return [float(each) for each in sw.orders.order_amplitudes(run.between(1.0, duration), "current", orders).amplitude]
 
 
 def test_worn_teeth_show_by_the_reaction_of_the_error_on_the_input() -> None:

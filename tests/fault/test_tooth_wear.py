@@ -17,7 +17,7 @@ def test_the_order_is_that_of_two_lobes_passing_the_spline(facts: sw.fault.Facts
 
 
 def test_the_play_is_the_twist_without_torque() -> None:
-    worn = sw.with_faults(sw.load("robot-joint"), [sw.fault.ToothWear(play=4e-4, severity=0.5)]).gear.stiffness
+    worn = sw.dataset.with_faults(sw.load("robot-joint"), [sw.fault.ToothWear(play=4e-4, severity=0.5)]).gear.stiffness
     assert worn.twist(1e-9) - worn.twist(-1e-9) == pytest.approx(2e-4, rel=1e-6)
     healthy = sw.load("robot-joint").gear.stiffness
     assert worn.twist(20.0) == pytest.approx(healthy.twist(20.0) + 1e-4, rel=1e-12)

@@ -48,9 +48,9 @@ def test_balls_that_do_not_fit_are_refused() -> None:
 def test_friction_that_is_zero_cannot_vary() -> None:
     drive = sw.Drive(gear=sw.Gear(kinematics=sw.kinematics.StrainWave()))
     with pytest.raises(ValueError, match=r"wave_generator_bearing changes nothing of this drive: .* in gear\.friction_input"):
-        sw.with_faults(drive, [sw.fault.WaveGeneratorBearing()])
+        sw.dataset.with_faults(drive, [sw.fault.WaveGeneratorBearing()])
 
 
 def test_friction_within_a_law_of_temperature_becomes_cyclic_within_it() -> None:
-    law = sw.with_faults(sw.load("robot-joint"), [sw.fault.WaveGeneratorBearing(waves=1)]).gear.friction_input
+    law = sw.dataset.with_faults(sw.load("robot-joint"), [sw.fault.WaveGeneratorBearing(waves=1)]).gear.friction_input
     assert (law.name, law.law.name, law.law.law.name) == ("thermal", "cyclic", "coulomb")

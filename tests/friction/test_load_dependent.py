@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.friction import LoadDependent
 
 LAW = LoadDependent(driving_forward=0.25, driving_reverse=0.375, backdriving_forward=0.5, backdriving_reverse=0.625)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from strainwave.friction import MaxwellSlipFriction

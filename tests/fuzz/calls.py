@@ -168,7 +168,7 @@ def friction_table() -> sw.Recording:
     return sw.Recording({"speed": speed, "torque": 0.02 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
 
 
-def fitted() -> sw.Fit:
+def fitted() -> sw.identification.Fit:
     return sw.fit(sw.Gear(), friction_table(), ["friction_input.viscous"])
 
 
@@ -186,10 +186,11 @@ def instances() -> tuple[Any, ...]:
     models = [usual_of(kind) for family in families().values() for kind in family.values()]
     return (
         *models, drive, drive.gear, drive.rest(), command, run,
-        valid()["recording"], sw.linearise(drive), sw.ScenarioFile(command), *sw.compare(run, run)[:1],
+        valid()["recording"], sw.linearise(drive), sw.simulation.ScenarioFile(command), *sw.compare(run, run)[:1],
         sw.simulate_many(drive, command, {"load.inertia": [0.1, 0.2]}, 1e-3),
-        sw.derivatives(drive, command, ["load.inertia"], 1e-3), sw.frequency_response(drive, 50.0, 0.5),
-        fitted(), sw.profile(fitted(), "friction_input.viscous"), sw.bootstrap(fitted(), 20), *sw.combinations(fitted()),
+        sw.analysis.derivatives(drive, command, ["load.inertia"], 1e-3), sw.analysis.frequency_response(drive, 50.0, 0.5),
+        fitted(), sw.identification.profile(fitted(), "friction_input.viscous"), sw.identification.bootstrap(fitted(), 20),
+        *sw.identification.combinations(fitted()),
         sw.GearSet.read("hfuc-25-100"),
         Quantity(value=1.0, unit="N.m", source="assumed"), FrictionTable.of(table), loop,
         DriveLog.of(run.select(["time", "command", "output_angle"]), drive),

@@ -76,11 +76,11 @@ def _run_many(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Ens
 def _differentiate(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Recording:
     dt = _step(drive, random)
     path = picked(random, _core.parameters(drive))[0]
-    return sw.derivatives(drive, sw.scenario.constant(5.0, 20.0 * dt), [path], dt, **inputs).run
+    return sw.analysis.derivatives(drive, sw.scenario.constant(5.0, 20.0 * dt), [path], dt, **inputs).run
 
 
 def _rest(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
-    return sw.equilibrium(drive, command=_size(random) if random.random() < 0.3 else 0.1, **inputs)
+    return sw.analysis.equilibrium(drive, command=_size(random) if random.random() < 0.3 else 0.1, **inputs)
 
 
 def _linearise(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
@@ -89,7 +89,7 @@ def _linearise(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
 
 
 def _respond(drive: Any, random: Generator, inputs: dict[str, float]) -> Any:
-    answer = sw.frequency_response(drive, 10.0, abs(_size(random)), max_periods=3, dt=1e-3, **inputs)
+    answer = sw.analysis.frequency_response(drive, 10.0, abs(_size(random)), max_periods=3, dt=1e-3, **inputs)
     return list(answer.responses.values())
 
 

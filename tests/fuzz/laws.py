@@ -136,7 +136,7 @@ def message_fault(text: str) -> str:
 
 def _warning_fault(warned: warnings.WarningMessage) -> str:
     """What is wrong with a warning, if anything."""
-    if warned.category not in (sw.PassivityWarning, sw.EnsembleWarning, RuntimeWarning):
+    if warned.category not in (sw.PassivityWarning, sw.simulation.EnsembleWarning, RuntimeWarning):
         fault = f"{warned.category.__name__}, which is not documented"
     else:
         fault = message_fault(str(warned.message))

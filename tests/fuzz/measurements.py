@@ -100,9 +100,9 @@ def _series(random: Generator, count: int) -> Array:
             return np.arange(1.0, count + 1.0)
 
 
-def _check_fit(fit: sw.Fit) -> None:
+def _check_fit(fit: sw.identification.Fit) -> None:
     _check_estimates(fit)
-    fit.summary()
+    str(fit)
     with warnings.catch_warnings(action="ignore"):
         assert fit.correlation.shape == fit.covariance.shape, "correlation of another shape"
 
@@ -113,7 +113,7 @@ def _check_estimates(fit: Any) -> None:
     assert finite(fit.predicted), "a prediction that is not finite"
 
 
-def _check_identified(found: sw.Identified, folder: Path) -> None:
+def _check_identified(found: sw.identification.Identified, folder: Path) -> None:
     from strainwave.report.identify import identify_report
 
     for each in found.files:

@@ -72,10 +72,10 @@ def scenarios_case(random: Generator, folder: Path) -> Case:
     data = encoded(mutated(text, random, WORDS), random)
     path.write_bytes(data)
 
-    def check(given: sw.ScenarioFile) -> None:
+    def check(given: sw.simulation.ScenarioFile) -> None:
         again = folder / "again.toml"
         given.save(again, drive)
-        assert sw.ScenarioFile.read(again, drive) == given, "a file holds the scenario otherwise"
+        assert sw.simulation.ScenarioFile.read(again, drive) == given, "a file holds the scenario otherwise"
         assert np.isfinite(given.command.value([0.0, given.command.duration])).all(), "a command that is not finite"
 
-    return Case(described(data, 2000), lambda: sw.ScenarioFile.read(path, drive), check)
+    return Case(described(data, 2000), lambda: sw.simulation.ScenarioFile.read(path, drive), check)

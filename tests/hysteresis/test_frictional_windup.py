@@ -7,8 +7,7 @@ import math
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from strainwave.hysteresis import FrictionalWindup, MaxwellSlip

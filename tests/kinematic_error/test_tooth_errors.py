@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.kinematic_error import ToothErrors
@@ -206,7 +205,7 @@ def test_a_running_gear_shows_the_order_of_each_spline(fixed: str, orders: tuple
         1e-3,
         initial={"input_speed": speed, "output_speed": speed / drive.gear.kinematics.ratio},
     )
-    found = sw.order_amplitudes(run, "kinematic_error", [*sorted(orders), 1.0, 1.01, 4.0])
+    found = sw.orders.order_amplitudes(run, "kinematic_error", [*sorted(orders), 1.0, 1.01, 4.0])
     expected = {
         orders[0]: 4e-6 * float(window(np.array(2), math.pi * 0.3 * 200 / 202)) / RADIUS,
         orders[1]: 6e-6 * float(window(np.array(2), math.pi * 0.3)) / RADIUS,

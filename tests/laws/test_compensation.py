@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, reject, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, reject, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import _core, compensation
 from strainwave.files.gear_set import load, save
@@ -171,7 +170,7 @@ def test_its_derivatives_are_those_of_differences(place: str, name: str) -> None
     """Central differences, of a run that is the run alone to the bit."""
     one = alone(place, name)
     paths = [f"control.compensation.{place}.{field}" for field in VARIED.get(name, [])]
-    found = sw.derivatives(one, COMMAND, paths or ["load.inertia"], sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, paths or ["load.inertia"], sample=1e-2)
     single = sw.simulate(one, COMMAND, sample=1e-2, method="exponential")
     assert np.array_equal(found.run["output_angle"], single["output_angle"])
     for path in paths:
@@ -192,7 +191,7 @@ def test_it_goes_on_where_a_run_ended(place: str, name: str, at: float) -> None:
     whole = sw.simulate(one, level, 1e-4, sample=1e-4)
     first = sw.simulate(one, sw.scenario.ramp(0.5, at), 1e-4, sample=1e-4)
     rest = sw.scenario.constant(0.5 * at, 0.4 - at) + sw.scenario.ramp(0.5, 0.4 - at)
-    second = sw.simulate(one, rest, 1e-4, sample=1e-4, start=first.end)
+    second = sw.simulate(one, rest, 1e-4, sample=1e-4, initial=first.end)
     for column in ("input_angle", "output_angle"):
         assert second[column][-1] == pytest.approx(whole[column][-1], abs=1e-7 * np.abs(whole[column]).max())
     for number in whole.end:

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, reject
-from hypothesis import strategies as st
+from hypothesis import given, reject, strategies as st
 from strainwave import _core
 
 from tests.control.discrete import ARM, CURRENT, DC, RATIO, TORQUE, drive
@@ -162,7 +161,7 @@ def test_its_derivatives_are_those_of_differences(name: str, sampled: bool) -> N
     prefix = "control.law." if sampled else "control."
     values = {prefix + field: value for field, value in numbers_of(name).items()}
     paths = list(values)
-    found = sw.derivatives(one, COMMAND, paths, sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, paths, sample=1e-2)
     assert np.array_equal(found.run["output_angle"], sw.simulate(one, COMMAND, sample=1e-2)["output_angle"])
     for path, value in values.items():
         step = 1e-4 * value
@@ -191,7 +190,7 @@ def test_it_goes_on_where_a_run_ended(name: str, sampled: bool) -> None:
     level = sw.scenario.constant(0.2, 0.1)
     whole = sw.simulate(one, level, sample=1e-3)
     first = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3)
-    second = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3, start=first.end)
+    second = sw.simulate(one, sw.scenario.constant(0.2, 0.05), sample=1e-3, initial=first.end)
     scale = np.abs(whole["output_angle"]).max()
     assert second["output_angle"][-1] == pytest.approx(whole["output_angle"][-1], abs=1e-12 * scale)
 

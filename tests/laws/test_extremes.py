@@ -13,8 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
+from hypothesis import example, given, strategies as st
 from numpy.typing import NDArray
 from strainwave.friction import Cyclic, LoadDependent, LuGre, PositionDependent, TorqueEfficiency
 from strainwave.hysteresis import FadingMemory

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, MixedLubrication, PositionDependent
@@ -304,7 +303,7 @@ def gap(spring: Any, error: Any, dt: float, steps: int) -> float:
     )
     rest = drive.rest()
     start = rest.replace(input_speed=50.0, output_speed=-0.2)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, dt * steps), dt, sample=100.0 * dt, start=start)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, dt * steps), dt, sample=100.0 * dt, initial=start)
     energy = 0.5 * (1.5e-4 * run["input_speed"] ** 2 + 0.05 * run["output_speed"] ** 2) + spring.energy(run["twist"])
     assert np.ptp(spring.energy(run["twist"])) > 1e-3 * energy[0]
     return float(np.abs(energy / energy[0] - 1.0).max())

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 from strainwave.kinematic_error import Fourier
 from strainwave.simulation.signals import outputs

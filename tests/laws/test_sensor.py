@@ -155,7 +155,7 @@ def test_derivatives_go_through_it(sensor: Any, sampled: bool) -> None:
     """
     one = seen_by(sensor, sampled)
     path = "control.law.proportional" if sampled else "control.proportional"
-    found = sw.derivatives(one, COMMAND, [path], 1e-4, sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, [path], 1e-4, sample=1e-2)
     assert np.array_equal(found.run["output_angle"], sw.simulate(one, COMMAND, 1e-4, sample=1e-2)["output_angle"])
     finer = one.replace({"sensors.input_angle": finely(sensor)})
     near = [sw.simulate(finer.replace({path: 0.5 + by}), COMMAND, 1e-4, sample=1e-2)["output_angle"] for by in (-5e-4, 5e-4)]
@@ -191,7 +191,7 @@ def test_derivatives_by_its_own_numbers_are_those_of_differences(sensor: Any, fi
     one = seen_by(sensor, sampled)
     paths = [f"sensors.input_angle.{field}" for field in fields]
     values = {path: number for path, number, *_ in _core.parameters(one)}
-    found = sw.derivatives(one, COMMAND, paths, 1e-4, sample=1e-2)
+    found = sw.analysis.derivatives(one, COMMAND, paths, 1e-4, sample=1e-2)
     for path in paths:
         step = 1e-4 * values[path]
         near = [

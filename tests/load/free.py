@@ -29,4 +29,4 @@ def held(load: Any, **parts: Any) -> sw.Drive:
 
 
 def run_of(drive: sw.Drive, duration: float, dt: float, start: State | None = None, **others: Any) -> sw.Run:
-    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt, start=start, **others)
+    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt, initial=start, **others)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.load.free import free, placed, run_of
 from tests.support.geared import RATIO, geared
@@ -75,7 +74,7 @@ def test_a_brake_that_is_let_go_lets_the_wound_up_gear_go() -> None:
     drive = geared(load=BRAKE, motor=sw.motor.TorqueSource(inertia=1e12), damping=0.0)
     start = drive.rest().replace(transmission_error=4e-4)  # 1e4 N.m/rad x 4e-4 rad = 4 N.m
     brake = sw.scenario.constant(5.0, 0.1) - sw.scenario.step(5.0, 0.1, start=0.05)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 1e-5, start=start, inputs={"brake_torque": brake})
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 1e-5, initial=start, inputs={"brake_torque": brake})
     held = run.time <= 0.05
     assert run["output_angle"][held] == pytest.approx(-4e-4, rel=1e-12)
     w = np.sqrt(1e4 / 0.02)
@@ -94,7 +93,7 @@ def test_a_brake_and_the_friction_of_the_output_share_what_they_hold() -> None:
     run = sw.simulate(
         drive,
         sw.scenario.constant(0.0, 0.01),
-        start=drive.rest().replace(transmission_error=4e-4),
+        initial=drive.rest().replace(transmission_error=4e-4),
         inputs={"brake_torque": 5.0},
     )
     assert not run["output_speed"].any()
@@ -107,7 +106,7 @@ def test_the_brake_takes_what_the_motor_gives_while_it_slips() -> None:
     drive = geared(load=BRAKE, motor=sw.motor.TorqueSource(inertia=1e12), damping=5.0).replace(meter=sw.meter.EnergyMeter())
     twist = 2.0 / 1e4
     start = drive.rest().replace(input_speed=20.0, output_speed=1.0, transmission_error=twist)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), 1e-4, start=start, inputs={"brake_torque": 2.0})
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), 1e-4, initial=start, inputs={"brake_torque": 2.0})
     assert run["output_speed"] == pytest.approx(1.0, rel=1e-9)
     assert run["energy_load"] == pytest.approx(2.0 * run.time, rel=1e-9, abs=1e-12)
     assert run["torque"] == pytest.approx(2.0, rel=1e-9)

@@ -7,8 +7,7 @@ import re
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.geared import MOTOR, RATIO, K, geared
 
@@ -64,7 +63,7 @@ def test_all_ways_to_run_it_agree() -> None:
     alone = sw.simulate(drive, command, 1e-4, method="exponential", **acting)
     many = sw.simulate_many(drive, command, {"gear.damping": [3.0, 4.0]}, 1e-4, record=["torque"], **acting)
     assert np.array_equal(many["torque"][0], alone["torque"])
-    found = sw.derivatives(drive, command, ["gear.stiffness.k"], 1e-4, **acting)
+    found = sw.analysis.derivatives(drive, command, ["gear.stiffness.k"], 1e-4, **acting)
     assert np.array_equal(found.run["torque"], alone["torque"])
     scale = np.abs(alone["torque"]).max()
     for method, near in (("rosenbrock", 1e-5), ("moreau_jean", 1e-2)):
@@ -93,9 +92,9 @@ def test_a_step_moves_the_shaft() -> None:
         (lambda d, c: sw.simulate(geared(), c, inputs={"output_angle": 1.0}), "must be one of load_torque, temperature"),
         (lambda d, c: d.step(d.rest(), load_torque=1.0, dt=1e-3), "the load of this drive takes output_angle"),
         (lambda d, c: geared().step(geared().rest(), output_angle=1.0, dt=1e-3), "only a load that prescribes"),
-        (lambda d, c: sw.equilibrium(d), "an output shaft that torques move"),
+        (lambda d, c: sw.analysis.equilibrium(d), "an output shaft that torques move"),
         (lambda d, c: sw.linearise(d), "an output shaft that torques move"),
-        (lambda d, c: sw.frequency_response(d, 1.0, 0.1), "an output shaft that torques move"),
+        (lambda d, c: sw.analysis.frequency_response(d, 1.0, 0.1), "an output shaft that torques move"),
     ],
 )
 def test_what_contradicts_it_is_refused_with_what_to_do(run: object, message: str) -> None:

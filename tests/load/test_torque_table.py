@@ -7,8 +7,7 @@ import itertools
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.load.free import free, placed, run_of
 from tests.support.geared import outputs

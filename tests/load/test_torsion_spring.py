@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.special import ellipj, ellipk
 
 from tests.load.free import free, held, placed, run_of
@@ -82,7 +81,7 @@ def test_a_pendulum_on_the_gear_rests_where_the_gear_holds_it() -> None:
     start = 1.2
     drive = held(ARM, damping=60.0)
     state = placed(drive, start).replace(input_angle=0.0)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 1.0), 1e-4, start=state, load_torque=0.0, sample=1.0)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 1.0), 1e-4, initial=state, load_torque=0.0, sample=1.0)
     assert run["output_angle"][-1] == pytest.approx(0.0, abs=1e-9)
     pushed = run_of(drive, 1.0, 1e-4, load_torque=-5.0, sample=1.0)["output_angle"][-1]
     assert K * pushed + 15.0 * np.sin(pushed) == pytest.approx(5.0, rel=1e-9)

@@ -54,5 +54,5 @@ def test_steps_too_long_for_a_stiff_load_are_refused_with_those_that_do() -> Non
     longest = float(found[1])
     assert longest == pytest.approx(1.0 / fastest(0.01, 1e6), rel=0.1)
     sw.simulate(drive, command, longest)
-    with pytest.warns(sw.EnsembleWarning, match="1 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="1 of 2 members have no result"):
         sw.simulate_many(drive, command, {"load.stiffness": [1e2, 1e6]}, 2e-4)

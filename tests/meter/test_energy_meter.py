@@ -327,7 +327,7 @@ def test_a_run_that_goes_on_goes_on_counting() -> None:
     whole = sw.simulate(LINEAR, sw.scenario.constant(VOLTS, 0.02), sample=1e-3)
     half = sw.scenario.constant(VOLTS, 0.01)
     first = sw.simulate(LINEAR, half, sample=1e-3)
-    then = sw.simulate(LINEAR, half, sample=1e-3, start=first.end)
+    then = sw.simulate(LINEAR, half, sample=1e-3, initial=first.end)
     assert then["energy_supplied"][0] == first["energy_supplied"][-1]
     assert then["energy_supplied"][-1] == pytest.approx(whole["energy_supplied"][-1], rel=1e-12)
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave import _core
 from strainwave.simulation.motion import InputMotion
 
@@ -121,7 +120,7 @@ def test_derivatives_are_those_of_differences() -> None:
     drive = geared(motor=MOVED, friction_input=sw.friction.Viscous(viscous=1e-3), damping=20.0)
     command = sw.scenario.sine(300.0, 4.0, 0.2)
     paths = ["gear.stiffness.k", "gear.damping", "motor.inertia", "gear.friction_input.viscous", "load.inertia"]
-    found = sw.derivatives(drive, command, paths, 1e-4)
+    found = sw.analysis.derivatives(drive, command, paths, 1e-4)
     for path in paths:
         value = _core.parameters(drive)[[each[0] for each in _core.parameters(drive)].index(path)][1]
         ends = [sw.simulate(drive.replace({path: value * (1.0 + by)}), command, 1e-4) for by in (-1e-5, 1e-5)]

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 
 from tests.support.flywheel import course, flywheel, instant, settled, torque_of, turning
@@ -66,7 +65,7 @@ def test_its_current_never_exceeds_the_limit_nor_its_voltage_the_supply(asked: l
     drive = flywheel(MOTOR)
     state = turning(drive, speed)
     for voltage in asked:
-        run = sw.simulate(drive, sw.scenario.constant(voltage, 3e-3), 1e-4, start=state)
+        run = sw.simulate(drive, sw.scenario.constant(voltage, 3e-3), 1e-4, initial=state)
         state = run.end
         assert np.abs(run["current"]).max() <= 10.0 * (1.0 + 1e-12)
         assert np.abs(run["voltage"]).max() <= 24.0
@@ -89,7 +88,7 @@ def test_a_controller_keeps_its_own_limit_where_the_motor_is_turned_too_fast(sen
     control = sw.control.Sampled(law=sw.control.PID(proportional=1.0, limit=12.0), period=1e-3)
     drive = flywheel(MOTOR).replace(control=control)
     start = turning(drive, sense * 1.2 * OVERSPEED)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.01), 1e-4, start=start)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.01), 1e-4, initial=start)
     assert run.end["control.actuation"] == sense * 12.0
     assert run["voltage"][-1] == sense * 24.0
 
@@ -101,7 +100,7 @@ def test_where_no_limit_acts_it_is_the_dc_motor(voltage: float, speed: float, cu
     for motor in (FREE, same):
         drive = geared(motor=motor, load=sw.loads.Inertia(inertia=0.05))
         start = turning(drive, speed, {"motor.current": current})
-        found.append(sw.simulate(drive, sw.scenario.constant(voltage, 0.01), 1e-4, start=start))
+        found.append(sw.simulate(drive, sw.scenario.constant(voltage, 0.01), 1e-4, initial=start))
     for name in ("current", "voltage", "input_speed", "output_speed", "torque"):
         scale = np.abs(found[1][name]).max()
         assert found[0][name] == pytest.approx(found[1][name], rel=1e-12, abs=1e-12 * scale)

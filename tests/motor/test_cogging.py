@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.flywheel import torque_of
 from tests.support.geared import K, geared
@@ -36,7 +35,7 @@ def test_cogging_holds_its_energy(motor: Any) -> None:
     cogging = motor.replace(cogging_torque=0.02, cogging_order=12, **names)
     drive = geared(motor=cogging, load=sw.loads.Prescribed(), damping=0.0).replace(meter=sw.meter.EnergyMeter())
     start = drive.rest().replace(input_speed=200.0)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 1e-5, start=start, inputs={"output_angle": 0.0})
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 1e-5, initial=start, inputs={"output_angle": 0.0})
     assert np.ptp(run["input_angle"]) > 2.0 * np.pi / 12.0
     stored = 0.02 / 12.0 * np.cos(12.0 * run["input_angle"])
     energy = 0.5 * 2e-4 * run["input_speed"] ** 2 + 0.5 * K * run["twist"] ** 2 + stored

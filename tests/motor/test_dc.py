@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
@@ -104,9 +103,9 @@ def test_a_shorted_motor_brakes_until_its_back_emf_is_the_drop_of_the_brushes() 
     drive = geared(motor=BRUSHED, load=sw.loads.Inertia(inertia=1e-6), stiffness=sw.stiffness.Linear(k=1e3), damping=0.0)
     # The load's inertia counts as 1e-6 / 400, beside 1e-3 kg.m2.
     rate = 0.05**2 / (2.0 * (1e-3 + 1e-6 / RATIO**2))
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 2.0), 2e-5, start=turning(drive, 100.0), sample=1e-2)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 2.0), 2e-5, initial=turning(drive, 100.0), sample=1e-2)
     assert run["input_speed"] == pytest.approx(30.0 + 70.0 * np.exp(-rate * run.time), rel=1e-6)
-    slow = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 2e-5, start=turning(drive, 29.0), sample=1e-2)
+    slow = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 2e-5, initial=turning(drive, 29.0), sample=1e-2)
     assert slow["input_speed"] == pytest.approx(29.0, rel=1e-12)
 
 

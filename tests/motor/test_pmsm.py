@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
@@ -241,7 +240,7 @@ def test_neither_voltage_nor_current_is_ever_longer_than_its_limit(drawn: tuple[
     drive = flywheel(motor)
     state = turning(drive, speed)
     for voltage in asked:
-        run = sw.simulate(drive, sw.scenario.constant(voltage, 2e-3), 5e-5, start=state)
+        run = sw.simulate(drive, sw.scenario.constant(voltage, 2e-3), 5e-5, initial=state)
         state = run.end
         assert np.hypot(run["voltage"], run["direct_voltage"]).max() <= REACH * (1.0 + 1e-12)
         assert np.hypot(run["current"], run["direct_current"]).max() <= motor.current_limit * (1.0 + 1e-9)
@@ -279,7 +278,7 @@ def test_cogging_holds_its_energy() -> None:
     """A rotor on the spring of a locked gear, thrown over a cog: 1/2 J w^2 + 1/2 k twist^2 + tau_c/n cos(n theta) stays."""
     drive = geared(motor=COGGING, load=sw.loads.Prescribed(), damping=0.0).replace(meter=sw.meter.EnergyMeter())
     start = drive.rest().replace(input_speed=200.0)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 1e-5, start=start, inputs={"output_angle": 0.0})
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.05), 1e-5, initial=start, inputs={"output_angle": 0.0})
     assert np.ptp(run["input_angle"]) > 2.0 * np.pi / 12.0
     cogging = 0.02 / 12.0 * np.cos(12.0 * run["input_angle"])
     energy = 0.5 * 2e-4 * run["input_speed"] ** 2 + 0.5 * K * run["twist"] ** 2 + cogging
@@ -297,7 +296,7 @@ def test_a_rotor_vibrates_in_its_cog() -> None:
         sw.scenario.constant(0.0, 0.05),
         1e-5,
         inputs={"output_angle": held},
-        start=start.replace(input_angle=np.pi / 12.0, transmission_error=0.0),
+        initial=start.replace(input_angle=np.pi / 12.0, transmission_error=0.0),
     )
     w = np.sqrt((K / RATIO**2 + 12.0 * 0.02) / 2e-4)
     assert run["input_angle"] - np.pi / 12.0 == pytest.approx(1e-3 / w * np.sin(w * run.time), abs=1e-6 * 1e-3 / w)
@@ -310,7 +309,7 @@ def test_a_current_sensor_with_an_offset_ripples_once_per_pair_of_poles() -> Non
     drive = flywheel(motor).replace(control=sw.control.StateFeedback(current=gain, limit=1e3))
     w = motor.pole_pairs * speed
     period = 2.0 * np.pi / w
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 10.0 * period), period / 400.0, start=turning(drive, speed))
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 10.0 * period), period / 400.0, initial=turning(drive, speed))
     last = run["current"][-401:-1]
     spectrum = np.fft.rfft(last) / len(last)
     amplitude = gain * offset / np.hypot(motor.resistance + gain, w * motor.quadrature_inductance)
@@ -323,7 +322,7 @@ def test_a_fast_current_loop_turns_the_offset_into_a_ripple_of_the_same_size() -
     gain, speed, offset = 40.0, 1.0, 0.3
     motor = SURFACE.replace(current_offset=offset)
     drive = flywheel(motor).replace(control=sw.control.StateFeedback(current=gain, limit=1e4))
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 1.3), 1e-5, start=turning(drive, speed), sample=1e-3)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 1.3), 1e-5, initial=turning(drive, speed), sample=1e-3)
     late = run.between(0.1, 1.3)
     wanted = -offset * np.sin(motor.pole_pairs * late["input_angle"])
     assert late["current"] == pytest.approx(wanted, abs=0.02 * offset)
@@ -337,7 +336,7 @@ def test_its_resistance_rises_with_the_temperature(temperature: float) -> None:
     """Copper: 0.393 % per kelvin above 20 degC."""
     motor = SURFACE.replace(resistance_rise=0.00393)
     drive = flywheel(motor)
-    shown = sw.simulate(drive, sw.scenario.constant(6.0, 0.2), 1e-4, start=turning(drive, 0.0), temperature=temperature).end
+    shown = sw.simulate(drive, sw.scenario.constant(6.0, 0.2), 1e-4, initial=turning(drive, 0.0), temperature=temperature).end
     assert shown["motor.quadrature_current"] == pytest.approx(6.0 / (0.4 * (1.0 + 0.00393 * (temperature - 293.15))), rel=1e-9)
 
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from strainwave import _core
@@ -101,7 +100,7 @@ def test_at_rest_the_uneven_phase_counts_by_the_angle_to_its_axis() -> None:
     drive = flywheel(motor).replace(meter=sw.meter.EnergyMeter())
     for angle, resistance in ((0.0, 0.4), (np.pi / 2.0, 0.4 + 0.4)):
         start = drive.rest().replace(input_angle=angle, transmission_error=0.0)
-        end = sw.simulate(drive, sw.scenario.constant(2.0, 0.1), 2e-5, start=start, sample=0.1)
+        end = sw.simulate(drive, sw.scenario.constant(2.0, 0.1), 2e-5, initial=start, sample=0.1)
         assert end["current"][-1] == pytest.approx(2.0 / resistance, rel=1e-9)
         assert end["power_motor"][-1] == pytest.approx(1.5 * 4.0 / resistance, rel=1e-9)
 
@@ -242,7 +241,7 @@ def test_an_inverter_that_measures_the_current_reaches_its_limit_in_spite_of_fau
     motor = SURFACE.replace(phase_resistance_excess=excess, dead_time_voltage=volts, pole_pairs=1, **LIMITED)
     drive = flywheel(motor)
     start = drive.rest().replace(input_angle=np.pi / 2.0, transmission_error=0.0)
-    run = sw.simulate(drive, sw.scenario.constant(1e3, 0.1), 2e-5, start=start, sample=1e-3)
+    run = sw.simulate(drive, sw.scenario.constant(1e3, 0.1), 2e-5, initial=start, sample=1e-3)
     assert run["current"][-1] == pytest.approx(12.0, rel=1e-9)
     assert run["voltage"][-1] == pytest.approx((0.4 + 2.0 / 3.0 * excess) * 12.0 + 4.0 / 3.0 * volts, rel=1e-9)
 
@@ -261,8 +260,8 @@ def test_adaptive_steps_follow_an_almost_open_phase() -> None:
     drive = flywheel(motor)
     start = turning(drive, 120.0)
     course_ = sw.scenario.constant(9.0, 4e-3)
-    adaptive = sw.simulate_adaptively(drive, course_, 1e-9, start=start, sample=1e-4)
-    fixed = sw.simulate(drive, course_, 1e-6, start=start, sample=1e-4)
+    adaptive = sw.simulate_adaptively(drive, course_, 1e-9, initial=start, sample=1e-4)
+    fixed = sw.simulate(drive, course_, 1e-6, initial=start, sample=1e-4)
     assert adaptive["current"] == pytest.approx(fixed["current"], abs=1e-5)
 
 

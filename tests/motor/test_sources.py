@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.geared import geared
 
@@ -61,7 +60,7 @@ def test_the_command_of_an_open_loop_has_the_unit_of_what_the_motor_takes(motor:
 
 def test_the_equilibrium_under_a_torque_balances_it() -> None:
     drive = geared(motor=sw.motor.TorqueSource())
-    held = sw.equilibrium(drive, command=0.05)
-    run = sw.simulate(drive, sw.scenario.constant(0.05, 0.1), start=held)
+    held = sw.analysis.equilibrium(drive, command=0.05)
+    run = sw.simulate(drive, sw.scenario.constant(0.05, 0.1), initial=held)
     assert run["torque"] == pytest.approx(0.05 * drive.gear.kinematics.ratio, rel=1e-9)
     assert run["output_angle"] == pytest.approx(run["output_angle"][0], abs=1e-9)

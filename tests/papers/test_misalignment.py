@@ -83,7 +83,7 @@ def test_what_reaches_the_output_is_what_the_linear_drive_lets_pass(gain: float,
     runs = (ramp, ramp.with_error(sw.kinematic_error.Fourier()))
     run, straight = (each.run().between(0.5 * ramp.duration, ramp.duration) for each in runs)  # the start has died away
     columns = {"input_angle": run["input_angle"], "output": run["output_angle"] - straight["output_angle"]}
-    seen = sw.order_amplitudes(sw.Recording(columns, dict.fromkeys(columns, "rad")), "output", [2.0, 4.0]).amplitude
+    seen = sw.orders.order_amplitudes(sw.Recording(columns, dict.fromkeys(columns, "rad")), "output", [2.0, 4.0]).amplitude
     speed = SHORT[0] / SHORT[1]
     expected = [share(gain, order, speed, side=side) for order in (2.0, 4.0)]
     assert seen / [3e-5, 1e-5] == pytest.approx(expected, rel=0.02)

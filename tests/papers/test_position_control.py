@@ -69,7 +69,7 @@ def integrated_stroke(voltage: float, width: float, friction: Callable[[float, f
 
 
 def test_the_figures_are_those_that_their_definitions_give_by_hand(found: PositionControl) -> None:
-    def check(agreement: sw.Agreement, x: np.ndarray, y: np.ndarray) -> None:
+    def check(agreement: sw.analysis.Agreement, x: np.ndarray, y: np.ndarray) -> None:
         difference = [b - a for a, b in zip(x.tolist(), y.tolist(), strict=True)]
         assert agreement.rms == pytest.approx(sqrt(sum(d * d for d in difference) / len(difference)), rel=1e-9)
         assert agreement.largest == pytest.approx(max(abs(d) for d in difference), rel=1e-12)

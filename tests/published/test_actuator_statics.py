@@ -11,8 +11,7 @@ from math import cos, pi, sin, tan
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.integrate import solve_ivp
 
 from tests.support.actuator_equations import (

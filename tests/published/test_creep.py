@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 

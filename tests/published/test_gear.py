@@ -8,8 +8,7 @@ from math import sqrt
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
@@ -40,7 +39,7 @@ def coasting(dt: float) -> sw.Recording:
     """From an untwisted gear that turns at 50 rad/s, and its output the other way at 0.5 rad/s."""
     rest = DRIVE.rest()
     start = rest.replace(input_speed=50.0, output_speed=-0.5)
-    return sw.simulate(DRIVE, sw.scenario.constant(0.0, DURATION), dt, start=start)
+    return sw.simulate(DRIVE, sw.scenario.constant(0.0, DURATION), dt, initial=start)
 
 
 def energy(run: sw.Recording) -> NDArray[np.float64]:

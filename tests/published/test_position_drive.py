@@ -11,8 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.linalg import expm
 
 from tests.support.samples import sample
@@ -150,7 +149,7 @@ def coasting(duration: float) -> sw.Recording:
     drive = DRIVE.replace(gear=GEAR.replace(stiffness=sw.stiffness.Linear(k=1e-30)), motor=OPEN_CIRCUIT)
     rest = drive.rest()
     start = rest.replace(input_speed=100.0, input_slip_direction=1.0)
-    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)
+    return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, initial=start)
 
 
 def test_coasting_down_takes_its_time_and_angle() -> None:
@@ -175,7 +174,7 @@ def test_the_coulomb_oscillator_turns_at_its_peaks_and_sticks() -> None:
     start = rest.replace(input_angle=1.0, transmission_error=1.0)
 
     def after(duration: float) -> sw.Recording:
-        return sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=1e-4, sample=duration, start=start)
+        return sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=1e-4, sample=duration, initial=start)
 
     stuck = 0.4617179388582711
     peaks = [after(stuck * half_periods / 3.0)["input_angle"][-1] for half_periods in (1, 2, 3)]
@@ -214,7 +213,7 @@ def test_coasting_down_from_any_speed(inertia: float, level: float, viscous: flo
     start = drive.rest().replace(input_speed=speed, input_slip_direction=1.0)
 
     def after(duration: float) -> sw.Recording:
-        return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=stop / 500.0, sample=duration, start=start)
+        return sw.simulate(drive, sw.scenario.constant(0.0, duration), dt=stop / 500.0, sample=duration, initial=start)
 
     assert after(stop * (1.0 - 1e-9))["input_speed"][-1] > 0.0
     stopped = after(stop * (1.0 + 1e-9))
@@ -243,7 +242,7 @@ def test_a_coulomb_oscillator_of_any_numbers_loses_as_much_at_each_peak(
         peaks.append(-peaks[-1] + math.copysign(2.0 * level / k, peaks[-1]))
     start = oscillator.rest().replace(input_angle=start_angle, transmission_error=start_angle)
     duration = len(peaks) * half
-    run = sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=half / 500.0, sample=half, start=start)
+    run = sw.simulate(oscillator, sw.scenario.constant(0.0, duration), dt=half / 500.0, sample=half, initial=start)
     found = run["input_angle"][: len(peaks)]
     assert found == pytest.approx(peaks, abs=1e-9 * start_angle)
     assert run["input_speed"][-1] == 0.0
@@ -280,8 +279,8 @@ class Slider:
         start = rest.replace(input_speed=100.0 * self.speed)
         still = sw.scenario.constant(0.0, duration)
         if method == "adaptive":
-            return sw.simulate_adaptively(drive, still, rtol=1e-10, sample=duration, start=start)
-        return sw.simulate(drive, still, dt=1e-4, sample=duration, start=start)
+            return sw.simulate_adaptively(drive, still, rtol=1e-10, sample=duration, initial=start)
+        return sw.simulate(drive, still, dt=1e-4, sample=duration, initial=start)
 
 
 @pytest.mark.slow("physics")
@@ -413,7 +412,7 @@ def test_two_sides_that_coast_down_together_stop_at_one_instant(ratio: float, si
     )
 
     def after(duration: float) -> sw.Recording:
-        return sw.simulate(pair.drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, start=start)
+        return sw.simulate(pair.drive, sw.scenario.constant(0.0, duration), dt=1e-3, sample=duration, initial=start)
 
     stop = first(lambda duration: after(duration)[f"{side}_speed"][-1] == 0.0, 0.4, 0.5)
     assert stop == pytest.approx(pair.inertia * speed / pair.coulomb, rel=1e-11)

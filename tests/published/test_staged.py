@@ -54,7 +54,7 @@ def test_20_newton_metres_load_the_parts_as_known() -> None:
 def test_the_fast_modes_are_the_known_ones_where_motor_and_load_hang_on_soft_shafts() -> None:
     """6298.71, 37476.81 and 66337.87 rad/s are of the gear by itself, both its ends free, as soft couplings leave them."""
     part = STRUCTURE.replace(coupling_stiffness=1e-6, circular_spline_stiffness=1e-3)
-    found = sw.modes(free(GEAR.replace(structure=part), 1.0, sw.loads.Inertia(inertia=1.0)))
+    found = sw.analysis.modes(free(GEAR.replace(structure=part), 1.0, sw.loads.Inertia(inertia=1.0)))
     assert found["free"][-3:] == pytest.approx([6298.71, 37476.81, 66337.87], abs=0.005)
 
 

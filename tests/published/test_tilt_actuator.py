@@ -94,13 +94,13 @@ def test_misalignment_shows_in_the_current_and_passes_to_the_position(name: str)
     turn = 2.0 * math.pi / (RATIO * RATE)
     late = skew.between(5.0 - 5.0 * turn, 5.0)
     error, current, angle = (
-        sw.order_amplitudes(late, each, [2.0]).amplitude[0] for each in ("kinematic_error", "current", "output_angle")
+        sw.orders.order_amplitudes(late, each, [2.0]).amplitude[0] for each in ("kinematic_error", "current", "output_angle")
     )
     asked = 2.0 * (ACROSS + SLIDING) * error / TORQUE_CONSTANT
     assert 0.5 * asked < current < 2.0 * asked
     assert angle == pytest.approx(error, rel=0.05)
     assert angle < 1e-4 * math.radians(90.0)
-    assert sw.order_amplitudes(straight.between(5.0 - 5.0 * turn, 5.0), "current", [2.0]).amplitude[0] < 1e-2 * current
+    assert sw.orders.order_amplitudes(straight.between(5.0 - 5.0 * turn, 5.0), "current", [2.0]).amplitude[0] < 1e-2 * current
     assert 1.0 < math.degrees(np.ptp(late["kinematic_error"])) * 60.0 < 1.2  # arcmin
 
 
@@ -224,7 +224,7 @@ def test_it_rests_on_the_stream_where_nothing_pulls() -> None:
     """Commanded to 0 its gear is out by its error: the wave generator turns by i e, and no current flows but for rounding."""
     drive = without_noise(sw.load(LUMPED))
     free = sw.friction.Viscous(viscous=drive.gear.friction_output.viscous)
-    found = sw.equilibrium(drive.replace({"gear.friction_output": free}), command=0.0)
+    found = sw.analysis.equilibrium(drive.replace({"gear.friction_output": free}), command=0.0)
     error = drive.gear.kinematic_error.error(found.input_angle)
     assert found.transmission_error == pytest.approx(error, rel=1e-12)
     assert found.input_angle == pytest.approx(RATIO * error, rel=1e-12)
@@ -300,7 +300,7 @@ def test_each_mode_of_the_stages_is_damped_by_two_percent() -> None:
     ratios = -poles.real / np.abs(poles)
     assert ratios[1:] == pytest.approx(0.02, rel=0.2)
     drive = aligned(without_noise(sw.load(STAGED))).replace({"load.airspeed": 0.0})
-    assert sw.modes(drive)["free"] == pytest.approx(np.abs(poles), rel=1e-3)
+    assert sw.analysis.modes(drive)["free"] == pytest.approx(np.abs(poles), rel=1e-3)
 
 
 def test_the_lump_is_as_stiff_and_as_damped_as_the_stages_in_series() -> None:
@@ -315,7 +315,7 @@ def test_it_rests_and_runs_with_its_stages_as_the_balance_says() -> None:
     """At 1 rad the stream alone: wave generator, rings and flank give way to T as their springs say. In open loop it runs."""
     drive = without_noise(sw.load(STAGED))
     free = sw.friction.Viscous(viscous=drive.gear.friction_output.viscous)
-    found = sw.equilibrium(drive.replace({"gear.friction_output": free}), command=1.0)
+    found = sw.analysis.equilibrium(drive.replace({"gear.friction_output": free}), command=1.0)
     torque = ACROSS * math.sin(1.0)
     assert found["structure.held_angle"] == pytest.approx(torque / 2e4, rel=1e-9)
     assert found["structure.driving_lead"] == pytest.approx(torque / 2e5, rel=1e-9)
@@ -323,7 +323,7 @@ def test_it_rests_and_runs_with_its_stages_as_the_balance_says() -> None:
     assert found["structure.windup"] == pytest.approx(turning / 2e3, rel=1e-9)
     assert turning == pytest.approx(torque / RATIO, rel=0.1)  # and what the error of the gear asks for
     motor = drive.replace({"control": sw.control.OpenLoop(), "sensors": sw.Sensors(), "load": sw.loads.Inertia(inertia=0.6)})
-    running = sw.equilibrium(motor, command=10.0, load_torque=5.0)
+    running = sw.analysis.equilibrium(motor, command=10.0, load_torque=5.0)
     current, speed = running["motor.current"], running.input_speed
     assert 0.284 * current + TORQUE_CONSTANT * speed == pytest.approx(10.0, rel=1e-12)
     assert current * TORQUE_CONSTANT * RATIO == pytest.approx(5.0 + 3.7 + 3.56 * speed / RATIO, rel=1e-9)

@@ -146,14 +146,14 @@ def functions(**given: Any) -> list[Callable[[], object]]:
     """Calls of every function that takes an argument of this name."""
     (name,) = given
     takes: dict[Callable[..., object], tuple[tuple[Any, ...], set[str]]] = {
-        sw.simulate: ((DRIVE, COMMAND), {"dt", "sample", "start"}),
-        sw.simulate_adaptively: ((DRIVE, COMMAND), {"rtol", "atol", "sample", "start"}),
+        sw.simulate: ((DRIVE, COMMAND), {"dt", "sample"}),
+        sw.simulate_adaptively: ((DRIVE, COMMAND), {"rtol", "atol", "sample"}),
         sw.simulate_many: ((DRIVE, COMMAND, MEMBERS), {"dt", "sample", "threads"}),
-        sw.frequency_response: (
+        sw.analysis.frequency_response: (
             (DRIVE, 20.0) + (() if name == "amplitude" else (0.01,)),
-            {"amplitude", "command", "load_torque", "temperature", "dt", "tolerance", "max_periods", "start"},
+            {"amplitude", "command", "load_torque", "temperature", "dt", "tolerance", "max_periods", "initial"},
         ),
-        sw.equilibrium: ((DRIVE,), {"command", "load_torque", "temperature", "start"}),
+        sw.analysis.equilibrium: ((DRIVE,), {"command", "load_torque", "temperature", "initial"}),
         sw.linearise: ((DRIVE,), {"state", "command", "command_rate", "load_torque", "temperature"}),
     }
     return [lambda f=f, a=a: f(*a, **given) for f, (a, names) in takes.items() if name in names]
@@ -187,7 +187,7 @@ def test_every_function_wants_whole_numbers_where_it_counts(name: str, low: int)
             call()
 
 
-@pytest.mark.parametrize("name", ["start", "state"])
+@pytest.mark.parametrize("name", ["initial", "state"])
 def test_every_function_wants_a_state_where_it_starts_from_one(name: str) -> None:
     for call in functions(**{name: "rest"}):
         with pytest.raises(TypeError, match=f"^{name} = 'rest' must be a state of a drive, as "):
@@ -201,7 +201,7 @@ def test_every_function_that_runs_a_drive_wants_a_scenario_as_command(command: A
         lambda: sw.simulate_adaptively(DRIVE, command),
         lambda: sw.simulate_many(DRIVE, command, MEMBERS),
         lambda: sw.simulate_to(tmp_path / "runs", DRIVE, command, MEMBERS),
-        lambda: sw.derivatives(DRIVE, command, ["load.inertia"]),
+        lambda: sw.analysis.derivatives(DRIVE, command, ["load.inertia"]),
     ]
     for call in calls:
         with pytest.raises(TypeError, match=f"^{re.escape(f'command = {command!r} must be a Scenario, as ')}"):

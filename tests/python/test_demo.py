@@ -4,28 +4,41 @@ from __future__ import annotations
 
 import re
 import shlex
+from pathlib import Path
 
 import pytest
 from strainwave.commands.cli import app
-from strainwave.commands.demo import NEXT
-from strainwave.demo import DEMONSTRATIONS, ROBOT_LOG, TORQUE_CONSTANT, position_drive, robot_joint
+from strainwave.commands.demo import OWN_LOG
+from strainwave.demo import DEMONSTRATIONS, ROBOT_LOG, TORQUE_CONSTANT, position_drive
 from strainwave.friction import Coulomb
+from strainwave.report.first_screen import next_commands
 from typer.testing import CliRunner
 
 
 @pytest.mark.slow("identification")
-def test_the_joint_passes_all_checks_and_what_is_told_next_runs(tmp_path, monkeypatch) -> None:
+@pytest.mark.parametrize("name", DEMONSTRATIONS)
+def test_the_commands_of_each_gear_run_and_name_its_files(name: str, tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
-    found = robot_joint()
-    assert not found.failed
-    found.gear_set.save("gear.toml")
-    lines = NEXT.format(gear="gear.toml").replace("YOUR-LOG.csv", str(ROBOT_LOG)).splitlines()
-    commands = [shlex.split(line)[1:] for line in lines if line.startswith("  strainwave ") and "docs" not in line]
-    assert [words[0] for words in commands] == ["identify", "predict", "export"]
-    assert all(f"torque_constant={TORQUE_CONSTANT}" in words for words in commands[:2])
+    found, folder = DEMONSTRATIONS[name].identified(), Path("out", name)
+    folder.mkdir(parents=True)
+    found.gear_set.save(folder / "gear.toml")
+    commands = [shlex.split(command) for _, command in next_commands(found, folder)]
+    assert len(commands) == 3
     for words in commands:
-        done = CliRunner().invoke(app, words)
+        assert str(folder / "gear.toml") in words
+        done = CliRunner().invoke(app, words[1:])
         assert done.exit_code == 0, done.output
+    if name == "robot-joint":
+        assert not found.failed
+        assert str(ROBOT_LOG) in commands[0]
+
+
+@pytest.mark.slow("identification")
+def test_the_command_for_an_own_log_runs() -> None:
+    (words,) = (shlex.split(line) for line in OWN_LOG.splitlines() if "identify" in line)
+    assert f"torque_constant={TORQUE_CONSTANT}" in words
+    done = CliRunner().invoke(app, [str(ROBOT_LOG) if word == "YOUR-LOG.csv" else word for word in words[1:]])
+    assert done.exit_code == 0, done.output
 
 
 @pytest.mark.parametrize("name", ["torsion-rig", "position-drive"])

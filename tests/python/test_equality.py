@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from hypothesis.extra import numpy as hnp
 from strainwave import _core
 from strainwave.analysis.steady import Rates
@@ -35,9 +34,9 @@ MAKERS: dict[str, Callable[[], Any]] = {
     "Excitation": lambda: Excitation(COMMAND),
     "TimeGrid": lambda: Excitation(COMMAND).time_grid(1e-3, 2e-3),
     "Ensemble": lambda: sw.simulate_many(DRIVE, COMMAND, {"load.inertia": [0.1, 0.2]}),
-    "Derivatives": lambda: sw.derivatives(DRIVE, COMMAND, ["load.inertia"]),
+    "Derivatives": lambda: sw.analysis.derivatives(DRIVE, COMMAND, ["load.inertia"]),
     "Linearisation": lambda: sw.linearise(DRIVE),
-    "FrequencyResponse": lambda: sw.frequency_response(DRIVE, [20.0], 0.01),
+    "FrequencyResponse": lambda: sw.analysis.frequency_response(DRIVE, [20.0], 0.01),
     "Rates": lambda: Rates.of(DRIVE, DRIVE.rest().numbers, np.zeros(6)),
     "GearSet": lambda: sw.GearSet.read("hfuc-25-100"),
     "drive": lambda: DRIVE,

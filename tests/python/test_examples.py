@@ -169,8 +169,10 @@ def test_an_example_that_shows_something_else_fails(tmp_path: Path) -> None:
 
 def test_a_command_that_prints_something_else_fails(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
-    page.write_text("```console\n$ python3 dev.py\n```\n\n```console\n$ strainwave gears 14-30 \\\n  | cat\nhfuc-14-30\n```\n")
+    page.write_text(
+        "```console\n$ python3 dev.py\n```\n\n```console\n$ strainwave list gears 14-30 \\\n  | cat\nhfuc-14-30\n```\n"
+    )
     (commands,) = examples(page)
     run_commands(commands, page)
-    with pytest.raises(AssertionError, match=r"page\.md, line 6: strainwave gears"):
+    with pytest.raises(AssertionError, match=r"page\.md, line 6: strainwave list gears"):
         run_commands(commands._replace(code=commands.code.replace("hfuc", "csg")), page)

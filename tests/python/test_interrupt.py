@@ -30,9 +30,9 @@ verbs = {
     "simulate": lambda: sw.simulate(DRIVE, long, sample=1.0),
     "adaptively": lambda: sw.simulate_adaptively(DRIVE, long, 1e-10, sample=1.0),
     "many": lambda: sw.simulate_many(DRIVE, long, {"load.inertia": np.linspace(0.1, 0.5, 64)}, sample=1.0),
-    "derivatives": lambda: sw.derivatives(DRIVE, long, free, sample=1.0),
+    "derivatives": lambda: sw.analysis.derivatives(DRIVE, long, free, sample=1.0),
     "fit": lambda: sw.fit(DRIVE, log, free),
-    "frequency_response": lambda: sw.frequency_response(DRIVE, np.linspace(0.01, 0.02, 100), 0.01, tolerance=1e-300),
+    "frequency_response": lambda: sw.analysis.frequency_response(DRIVE, np.linspace(0.01, 0.02, 100), 0.01, tolerance=1e-300),
 }
 def pressed(work):
     """The same work of the core; from its first call on, Ctrl-C is pressed until the verb ends."""

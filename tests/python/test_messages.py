@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.messages import listed, one_line, quoted, shortened, unquoted
 
 # Any code point, surrogates too, as a file or an argument may hold them.

@@ -17,7 +17,7 @@ import pytest
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 from strainwave.orders.measured import OrdersFound, orders_found
-from strainwave.orders.ripple import Ripple
+from strainwave.orders.torque_ripple import Ripple
 
 from tests.evidence.rig import RIG, measured
 from tests.support.samples import sample

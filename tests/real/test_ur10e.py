@@ -15,6 +15,8 @@ import pytest
 import strainwave as sw
 from strainwave.identification.candidates.friction import innermost
 
+from tests.python.command import strainwave
+
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "arms" / "ur10e"
 TORQUE_CONSTANT = 0.1  # N.m/A, rough
 MAX_CHANGE_SIGMA = 3.0  # standard deviations between halves of one record
@@ -37,11 +39,11 @@ def halves(joint: int, folder: Path) -> tuple[Path, Path]:
 
 
 @pytest.fixture(scope="module")
-def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float], sw.Prediction]:
+def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float], sw.identification.Prediction]:
     """The second half of a joint, predicted by the gear of the first half with a torque constant."""
 
     @cache
-    def by_the_first_half(joint: int, constant: float) -> sw.Prediction:
+    def by_the_first_half(joint: int, constant: float) -> sw.identification.Prediction:
         folder = tmp_path_factory.mktemp("halves")
         first, second = halves(joint, folder)
         found = sw.identify("csg-20-100", [first], mapping=mapping(joint, constant), accept=constant != TORQUE_CONSTANT)
@@ -54,7 +56,9 @@ def predicted(tmp_path_factory: pytest.TempPathFactory) -> Callable[[int, float]
 
 @pytest.mark.slow("identification")
 @pytest.mark.parametrize("joint", [1, 2, 4, 5])
-def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int, float], sw.Prediction]) -> None:
+def test_the_first_half_predicts_the_second(
+    joint: int, predicted: Callable[[int, float], sw.identification.Prediction]
+) -> None:
     found = predicted(joint, TORQUE_CONSTANT)
     errors = f"error {found.error:.3f} A of {found.varies:.3f}, {found.allowed:.3f} allowed, plain {found.plain:.3f}"
     print(f"\njoint {joint}: {errors}")
@@ -68,7 +72,7 @@ def test_the_first_half_predicts_the_second(joint: int, predicted: Callable[[int
 
 
 @pytest.mark.slow("identification")
-def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.Prediction]) -> None:
+def test_currents_do_not_depend_on_the_torque_constant(predicted: Callable[[int, float], sw.identification.Prediction]) -> None:
     assert predicted(2, 4.0 * TORQUE_CONSTANT).error == pytest.approx(predicted(2, TORQUE_CONSTANT).error, rel=0.05)
 
 
@@ -94,3 +98,24 @@ def test_halves_of_a_joint_do_not_contradict_each_other(tmp_path: Path) -> None:
         (tmp_path / str(joint)).mkdir()
         found = sw.identify("csg-20-100", list(halves(joint, tmp_path / str(joint))), mapping=mapping(joint, TORQUE_CONSTANT))
         assert not any(check.failed for check in found.checks if check.name == "agreement of files")
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("joint", [3, 6])
+@pytest.mark.parametrize(("ratio", "torque_constant"), [(101.0, 0.1), (161.6, 0.2)])
+def test_the_verdict_names_what_one_encoder_does_not_check(
+    tmp_path: Path, joint: int, ratio: float, torque_constant: float
+) -> None:
+    """Its ripple checks the ratio; nothing checks the torque constant."""
+    columns = (f"output_angle={1 + joint}", f"output_speed={7 + joint}", f"current={13 + joint}", "time=1")
+    constants = (f"ratio={ratio:g}", f"torque_constant={torque_constant:g}")
+    result = strainwave(
+        "identify", "csg-20-100", FOLDER / "ur-20_02_05-20sec_12harm.csv", *(f"--column={each}" for each in columns),
+        "--unit=output_angle=rad", "--unit=output_speed=rad/s", *(f"--constant={each}" for each in constants), folder=tmp_path,
+    )  # fmt: skip
+    value = f"the torque constant, {torque_constant:g} N·m/A"
+    assert f"it does not check {value}: friction, inertia and gravity scale with it" in result.stdout
+    assert f"nothing checks {value}" in (tmp_path / "out" / "identify" / "report.html").read_text(encoding="utf-8")
+    wrong = "a ratio of 100 or 101, the ratio of the gear is 161.6"
+    assert (wrong in result.stdout) == (ratio > 101.0)
+    assert ("--constant ratio=100 or --constant ratio=101" in result.stdout) == (ratio > 101.0)

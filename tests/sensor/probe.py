@@ -44,5 +44,5 @@ def from_elsewhere(sensor: Any, at: dict[str, float], duration: float, dt: float
     drive = probe(sensor)
     start = drive.rest().replace({f"sensors.output_angle.{name}": value for name, value in at.items()})
     still = sw.scenario.constant(0.0, duration)
-    run = sw.simulate(drive, still, dt, start=start)
+    run = sw.simulate(drive, still, dt, initial=start)
     return run.time, run["motor_torque"]

@@ -9,10 +9,8 @@ import pytest
 import strainwave as sw
 from scipy.optimize import brentq
 
-from tests.control.discrete import TORQUE
-from tests.control.discrete import drive as linear
-from tests.control.test_delay_margin import LAW as POSITION
-from tests.control.test_delay_margin import crossover
+from tests.control.discrete import TORQUE, drive as linear
+from tests.control.test_delay_margin import LAW as POSITION, crossover
 from tests.sensor.probe import from_elsewhere, probe, shown
 
 DELAY = 4e-3
@@ -105,5 +103,5 @@ def test_steps_that_cannot_follow_a_sensor_are_refused(sensor: object, rate: flo
     with pytest.raises(FloatingPointError, match=rf"as fast as a vibration of {rate:.4g} rad/s"):
         shown(sensor, motion, 1.01 / rate)
     still, dampings, inputs = sw.scenario.constant(0.0, 0.02), {"gear.damping": [0.0, 1.0]}, {"output_angle": motion}
-    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="2 of 2 members have no result"):
         sw.simulate_many(probe(sensor), still, dampings, 1.01 / rate, inputs=inputs)

@@ -7,8 +7,7 @@ from math import tau
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 
 from tests.sensor.probe import Array, probe, shown

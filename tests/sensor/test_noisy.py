@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 
 from tests.kinematic_error.test_stochastic import drawn
@@ -117,7 +116,7 @@ def test_it_goes_on_where_a_run_ended() -> None:
     drive, half = probe(noise(12)), sw.scenario.constant(0.0, 0.1)
     whole = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), 1e-3)["motor_torque"]
     first = sw.simulate(drive, half, 1e-3)
-    second = sw.simulate(drive, half, 1e-3, start=first.end)
+    second = sw.simulate(drive, half, 1e-3, initial=first.end)
     assert second["motor_torque"] == pytest.approx(whole[100:], abs=1e-11)
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 
 from tests.support.flywheel import HEAVY
@@ -32,7 +31,7 @@ def turned(
 ) -> sw.Run:
     command = sw.scenario.constant(0.0, duration)
     start = drive.rest()  # its input stays there
-    return sw.simulate(drive, command, 1e-4, inputs={"output_angle": angle}, temperature=temperature, start=start, **others)
+    return sw.simulate(drive, command, 1e-4, inputs={"output_angle": angle}, temperature=temperature, initial=start, **others)
 
 
 @given(temperature=temperatures, twist=twists)
@@ -71,7 +70,7 @@ def test_the_frequency_of_a_gear_falls_with_the_root_of_its_stiffness() -> None:
     warm = 353.15
     drive = geared(motor=sw.motor.TorqueSource(inertia=HEAVY), load=sw.loads.Inertia(inertia=0.05), softening=SOFT, damping=0.0)
     start = drive.rest().replace(transmission_error=1e-4)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 1e-5, start=start, temperature=warm, sample=1e-3)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), 1e-5, initial=start, temperature=warm, sample=1e-3)
     w = np.sqrt(K * np.exp(-3e-3 * (warm - COLD)) / 0.05)
     assert run["twist"] == pytest.approx(1e-4 * np.cos(w * run.time), abs=1e-10)
 
@@ -112,7 +111,7 @@ def test_the_gear_is_as_soft_as_its_own_losses_make_it() -> None:
     drive = rig(friction_input=sw.friction.Viscous(viscous=4e-3)).replace(thermal=body, meter=sw.meter.NoMeter())
     start = drive.rest().replace(input_speed=50.0)
     follows = sw.scenario.ramp(2.5, 0.2) + sw.scenario.constant(-1e-3, 0.2)  # with the input, but for a twist of 1e-3 rad
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), 1e-4, start=start, inputs={"output_angle": follows})
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), 1e-4, initial=start, inputs={"output_angle": follows})
     assert run["temperature"][-1] - COLD == pytest.approx(40.0, rel=1e-9)
     assert run["torque"] == pytest.approx(K * 1e-3 * np.exp(-3e-3 * 200.0 * run.time), rel=1e-8)
 
@@ -135,7 +134,7 @@ def test_an_ensemble_in_the_cold_is_refused_steps_that_would_do_in_the_warmth() 
     command = sw.scenario.constant(0.0, 0.01)
     longest = 0.9 / _core.max_rate(drive, 0.0)
     assert sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest).failures == {}
-    with pytest.warns(sw.EnsembleWarning, match="2 of 2 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="2 of 2 members have no result"):
         sw.simulate_many(drive, command, {"gear.damping": [0.0, 1.0]}, longest, temperature=233.15)
 
 
@@ -145,7 +144,7 @@ def test_derivatives_of_a_warm_drive_are_not_refused_steps_that_would_not_do_in_
     warm, command = COLD + 60.0, sw.scenario.constant(0.1, 0.01)
     longest = 0.9 / _core.max_rate(drive, 0.0, warm)
     with pytest.raises(FloatingPointError, match="too coarse"):
-        sw.derivatives(drive, command, ["load.inertia"], longest)
-    found = sw.derivatives(drive, command, ["load.inertia"], longest, temperature=warm)
+        sw.analysis.derivatives(drive, command, ["load.inertia"], longest)
+    found = sw.analysis.derivatives(drive, command, ["load.inertia"], longest, temperature=warm)
     run = sw.simulate(drive, command, longest, temperature=warm)
     assert np.array_equal(found.run["twist"], run["twist"])

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -83,7 +82,7 @@ def test_its_bound_is_that_of_its_spring_behind_half_the_play() -> None:
 def test_a_drive_that_twists_its_spring_too_far_is_told_so() -> None:
     drive = geared(Backlash(law=made(MultiCompliance), clearance=PLAY))
     with pytest.raises(ValueError, match=r"gear\.stiffness: twist = .* rad lies outside of \[-0\.01335"):
-        sw.simulate(drive, OFF, 1e-6, start=drive.rest().replace(output_speed=-10.0))
+        sw.simulate(drive, OFF, 1e-6, initial=drive.rest().replace(output_speed=-10.0))
 
 
 def test_the_ratio_of_its_spring_has_to_be_that_of_the_gear() -> None:
@@ -135,7 +134,7 @@ def test_between_the_flanks_both_sides_fly_freely_and_a_flank_throws_them_back()
     """A cycle: twice across the play at the speed v, and twice half a period of two masses on the spring."""
     drive, speed = geared(Backlash(law=STIFF, clearance=PLAY)), 0.1
     start = drive.rest().replace(output_speed=-speed)
-    run = sw.simulate_adaptively(drive, OFF, 1e-10, start=start, sample=1e-5)
+    run = sw.simulate_adaptively(drive, OFF, 1e-10, initial=start, sample=1e-5)
     first = 0.5 * PLAY / speed  # from the middle
     free = run.time < first
     assert np.count_nonzero(free) == 200
@@ -214,7 +213,9 @@ def test_derivatives_by_play_and_stiffness_are_those_of_the_closed_form() -> Non
     drive = geared(Backlash(law=STIFF, clearance=PLAY), damping=1e3)
     start = {"output_angle": 0.0, "torque": 2.0}
     paths = ["gear.stiffness.clearance", "gear.stiffness.law.k"]
-    found = sw.derivatives(drive, sw.scenario.constant(2.0 / RATIO, 1e-3), paths, load_torque=2.0, initial=start, sample=1e-3)
+    found = sw.analysis.derivatives(
+        drive, sw.scenario.constant(2.0 / RATIO, 1e-3), paths, load_torque=2.0, initial=start, sample=1e-3
+    )
     assert [found["twist", path][0] for path in paths] == pytest.approx([0.5, -2.0 / K**2], rel=1e-9)
 
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tests.structure.staged_gear import (
     DRIVE,
@@ -206,7 +205,7 @@ def test_the_modes_are_those_of_masses_and_springs(
     """Of the equations' matrices: six bodies, the input held or free."""
     gear = GEAR.replace(kinematics=FIXED[fixed], stiffness=sw.stiffness.Linear(k=k_t), structure=STRUCTURE.replace(**numbers))
     drive = free(gear, j_in, sw.loads.Inertia(inertia=j_out))
-    found = sw.modes(drive)
+    found = sw.analysis.modes(drive)
     assert found["free"] == pytest.approx(frequencies(drive, [IN, WG, X2, Y1, Y2, OUT])[1:], rel=1e-6)
     assert found["input held"] == pytest.approx(frequencies(drive, [WG, X2, Y1, Y2, OUT]), rel=1e-6)
 

@@ -92,7 +92,7 @@ def test_derivatives_by_its_numbers_are_what_differences_show(fixed: str) -> Non
         "gear.structure.pitch_radius",
     ]
     command, load = SHAKEN.scenario(0.004), PUSHED.scenario(0.004)
-    found = sw.derivatives(drive, command, names, 1e-5, load_torque=load, sample=4e-4)
+    found = sw.analysis.derivatives(drive, command, names, 1e-5, load_torque=load, sample=4e-4)
     for name in names:
         value = at(drive, name)
         step = 1e-5 * value
@@ -166,7 +166,7 @@ def test_what_springs_leave_to_explicit_steps_bounds_their_length(changed: sw.Ge
 def test_even_springs_are_taken_in_steps_of_many_radians() -> None:
     """Four of the fastest vibration, to a thousandth of the largest torque; set off by a step of the load."""
     drive = DRIVE.replace(gear=GEAR.replace(kinematic_error=sw.kinematic_error.Fourier()))
-    assert max(sw.modes(drive)["free"]) * 4e-4 > 3.5
+    assert max(sw.analysis.modes(drive)["free"]) * 4e-4 > 3.5
     coarse, fine = (
         sw.simulate(drive, SHAKEN.scenario(0.02), dt, load_torque=5.0, sample=4e-4, initial={"input_speed": 0.0})["torque"]
         for dt in (4e-4, 1e-5)

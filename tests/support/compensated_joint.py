@@ -8,6 +8,6 @@ import strainwave as sw
 
 
 @cache
-def robot_joint() -> sw.Compensated:
+def robot_joint() -> sw.tuning.Compensated:
     """Return the compensation of the robot joint on three drawn gears, computed once in a process: it takes 40 ensembles."""
     return sw.compensate("robot-joint", members=3, travel=0.03)

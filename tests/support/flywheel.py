@@ -33,7 +33,7 @@ def course(motor: Any, voltage: float, speed: float, duration: float, dt: float 
     """Currents after a voltage has been switched on at a speed, from none or from these."""
     drive = flywheel(motor)
     start = turning(drive, speed, {f"motor.{name}": value for name, value in numbers.items()})
-    return sw.simulate(drive, sw.scenario.constant(voltage, duration), dt, start=start)
+    return sw.simulate(drive, sw.scenario.constant(voltage, duration), dt, initial=start)
 
 
 def settled(motor: Any, voltage: float, speed: float, **numbers: float) -> dict[str, float]:

@@ -18,5 +18,5 @@ def side_by_side(drives: Sequence[sw.Drive], command: sw.scenario.Scenario, dt: 
     values = np.array([[value for _, value, *_ in _core.parameters(drive)] for drive in drives])
     record = list(outputs(drives[0]))
     parameters = dict(zip(paths, values.T, strict=True))
-    with warnings.catch_warnings(action="ignore", category=sw.EnsembleWarning):  # of bristles too stiff for dt
+    with warnings.catch_warnings(action="ignore", category=sw.simulation.EnsembleWarning):  # of bristles too stiff for dt
         return sw.simulate_many(drives[0], command, parameters, dt, record=record, **others)

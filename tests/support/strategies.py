@@ -7,8 +7,7 @@ from functools import cache
 from typing import Any
 
 import strainwave as sw
-from hypothesis import reject
-from hypothesis import strategies as st
+from hypothesis import reject, strategies as st
 from strainwave import _core
 
 # Where the numbers of gears and their motors lie, by unit; a unit not listed lies around one.

@@ -7,8 +7,7 @@ import re
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
@@ -29,7 +28,7 @@ def warmed(
     """Constant losses: R i^2 of the winding, and b omega^2 of the gear, whose input is a flywheel."""
     drive = flywheel(COIL, friction_input=sw.friction.Viscous(viscous=viscous)).replace(thermal=body)
     command = sw.scenario.constant(current, duration)
-    return sw.simulate(drive, command, 1e-3, start=turning(drive, SPEED), temperature=temperature, sample=0.02)
+    return sw.simulate(drive, command, 1e-3, initial=turning(drive, SPEED), temperature=temperature, sample=0.02)
 
 
 def two_bodies(body: sw.thermal.Heating, heat: tuple[float, float], ambient: float, time: Array) -> Array:
@@ -120,7 +119,7 @@ def test_friction_has_the_temperature_of_the_gear() -> None:
     fall, viscous = 0.03, 0.004
     law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=viscous), viscous_fall=fall)
     drive = flywheel(COIL, friction_input=law).replace(thermal=LONELY)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 2.0), 1e-3, start=turning(drive, SPEED), sample=0.05)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 2.0), 1e-3, initial=turning(drive, SPEED), sample=0.05)
     warmer = np.log(1.0 + fall * viscous * SPEED**2 * run.time / 0.05) / fall
     assert warmer[-1] > 80.0
     assert run["temperature"] - AMBIENT == pytest.approx(warmer, rel=1e-8, abs=1e-9)
@@ -139,7 +138,9 @@ def test_friction_of_all_places_and_damping_warm_the_gear() -> None:
         friction_output=sw.friction.Viscous(viscous=0.5),
     ).replace(thermal=LONELY)
     turned = sw.scenario.ramp(1.0, 0.5)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), 1e-3, start=turning(drive, 40.0), inputs={"output_angle": turned})
+    run = sw.simulate(
+        drive, sw.scenario.constant(0.0, 0.5), 1e-3, initial=turning(drive, 40.0), inputs={"output_angle": turned}
+    )
     power = 1e-3 * 40.0**2 + 0.3 * (40.0 / RATIO) ** 2 + 0.5 * 1.0**2 + 2.0 * (40.0 / RATIO - 1.0) ** 2
     assert run["temperature"] - AMBIENT == pytest.approx(power / 0.05 * run.time, rel=1e-9, abs=1e-9)
 
@@ -156,7 +157,7 @@ def test_the_area_of_a_loop_of_hysteresis_warms_the_gear() -> None:
     ).replace(thermal=LONELY)
     turned = sw.scenario.sine(amplitude, 10.0, 0.5)
     command = sw.scenario.constant(0.0, 0.5)
-    run = sw.simulate(drive, command, 1e-4, start=drive.rest(), inputs={"output_angle": turned}, sample=0.05)
+    run = sw.simulate(drive, command, 1e-4, initial=drive.rest(), inputs={"output_angle": turned}, sample=0.05)
     cycle = 4.0 * force * (amplitude - force / k)
     rise = 0.05 * (run["temperature"][8] - run["temperature"][6])  # samples at twice the frequency: one cycle
     assert rise == pytest.approx(cycle, rel=1e-4)

@@ -39,7 +39,7 @@ struct WaveGeneratorBearing {
         with s = severity, f the factor of the friction at the input, and of the stiffness, d = friction_depth and
         stiffness_depth, n = waves, phi = phase, z = balls, d_b = ball_diameter, D = pitch_diameter, gamma = d_b cos(alpha) / D,
         alpha = contact_angle, r = speed of the outer ring over that of the input: it turns with the flexspline, so r = 1 / i if
-        the circular spline is fixed, else 0. These are the orders of ``sw.bearing_orders``. At severity 1 the first wave has the
+        the circular spline is fixed, else 0. These are the orders of ``sw.orders.bearing_orders``. At severity 1 the first wave has the
         depth d, relative to the healthy friction or stiffness.
 
         Leaves out the ellipse of the inner ring, which loads each ball twice a turn and adds lines 2 orders away. A damaged

@@ -1,1 +1,5 @@
 """Properties of a drive without a long run: steady state, linearisation, responses, derivatives."""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,20 +11,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, _core, arguments, typeset
 from strainwave.analysis.steady import averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.messages import listed, quoted
 from strainwave.native import kernels
+from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
 from strainwave.simulation.scenario import MIN_DURATION, constant, sine
-from strainwave.simulation.signals import check_continuous, command_unit
-from strainwave.simulation.signals import outputs as outputs_of
-from strainwave.simulation.signals import units as units_of
+from strainwave.simulation.signals import check_continuous, command_unit, outputs as outputs_of, units as units_of
 from strainwave.simulation.state import State, start_of
 
 if TYPE_CHECKING:
@@ -40,7 +39,7 @@ _SINES = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse(ComparedByFields):
+class FrequencyResponse(ComparedByFields, Pictured):
     """Response of a drive to a sine of some amplitude, in periodic motion.
 
     ``answer["output_angle"]`` is the response of that output: amplitude and phase of its first harmonic over those of the
@@ -61,7 +60,7 @@ class FrequencyResponse(ComparedByFields):
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
-    >>> answer = sw.frequency_response(drive, [1.0, 10.0], amplitude=0.01)
+    >>> answer = sw.analysis.frequency_response(drive, [1.0, 10.0], amplitude=0.01)
     >>> (20.0 * np.log10(abs(answer["output_angle"]))).round(1)  # dB
     array([-0.3, -4.2])
     >>> np.degrees(np.angle(answer["output_angle"])).round(1)
@@ -98,6 +97,18 @@ class FrequencyResponse(ComparedByFields):
             raise ValueError(f"no output {quoted(output)}; there are {listed(self.responses)}")
         return self.responses[output]
 
+    def _headline(self) -> str:
+        low, high = (typeset.quantity(float(end), "Hz") for end in (self.frequency.min(), self.frequency.max()))
+        size = typeset.quantity(self.amplitude, self.units[self.input])
+        return f"{len(self.responses)} outputs to a sine of {self.input} of {size}, {low} to {high}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name, response in self.responses.items():
+            size = np.abs(response)
+            unit = ratio_of_units(self.units[name], self.units[self.input])
+            worst = typeset.number(100.0 * float(self.distortions[name].max()), 3)
+            yield Row(name, (float(size.min()), float(size.max())), unit, note=f"distortion up to {worst} %")
+
 
 def frequency_response(
     drive: Drive,
@@ -108,16 +119,16 @@ def frequency_response(
     command: float = 0.0,
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
-    start: State | None = None,
+    initial: State | None = None,
     dt: float = 2e-4,
     tolerance: float = 1e-6,
     max_periods: int = 1000,
 ) -> FrequencyResponse:
     """Run a drive under sines around an operating point until it moves periodically, and return the first harmonics.
 
-    Each frequency begins at `start`. What drifts at a steady rate counts as periodic: the drift is taken off, and reported; the
-    answer of a drive that creeps under the vibration is that of the moment. Of an amplitude small enough, the response is that
-    of `linearise`.
+    Each frequency begins at `initial`. What drifts at a steady rate counts as periodic: the drift is taken off, and reported;
+    the answer of a drive that creeps under the vibration is that of the moment. Of an amplitude small enough, the response is
+    that of `linearise`.
 
     Args:
         drive: the drive
@@ -127,7 +138,7 @@ def frequency_response(
         command: output angle [rad] or voltage [V] that the sine swings about
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K]
-        start: where to begin; the `equilibrium` of the constant inputs if not given
+        initial: where to begin; the `equilibrium` of the constant inputs if not given
         dt: largest step [s]; a period has 64 steps at least
         tolerance: periodic is what differs from the period before by less than this share of its swing, every output
         max_periods: after how many periods to give up
@@ -148,7 +159,7 @@ def frequency_response(
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
     >>> drive = sw.Drive(load=arm, control=sw.control.PID(proportional=2.0, derivative=0.05))
-    >>> answer = sw.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
+    >>> answer = sw.analysis.frequency_response(drive, [1.0, 2.0], amplitude=0.01)
     >>> linear = sw.linearise(drive)
     >>> abs(answer["output_angle"] / linear.response([1.0, 2.0])).round(3)
     array([1., 1.])
@@ -161,13 +172,13 @@ def frequency_response(
     _check(frequencies, input, dt)
     tolerance = arguments.number("tolerance", tolerance, low=0.0)
     max_periods = arguments.whole("max_periods", max_periods, 2)
-    if start is None:
-        start = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
-    start = start_of(drive, start)
-    if start.input_speed != 0.0:
+    if initial is None:
+        initial = equilibrium(drive, command=command, load_torque=load_torque, temperature=temperature)
+    initial = start_of(drive, initial)
+    if initial.input_speed != 0.0:
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
-    sines = _Sines(drive, start.numbers, dt)
+    sines = _Sines(drive, initial.numbers, dt)
     found = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}

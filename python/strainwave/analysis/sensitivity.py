@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import parameters as chosen
+from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.run import differentiate
@@ -35,7 +36,7 @@ NO_MEASURE = {
 
 
 @dataclass(frozen=True, eq=False)
-class Derivatives(ComparedByFields):
+class Derivatives(ComparedByFields, Pictured):
     """A run, and the derivatives of its outputs by some parameters.
 
     Attributes:
@@ -47,7 +48,7 @@ class Derivatives(ComparedByFields):
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+    >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
     >>> round(1e6 * found.effects("output_angle")["load.inertia"], 1)  # urad of the output, rms, by 1 % more inertia
     19.0
     """
@@ -69,7 +70,7 @@ class Derivatives(ComparedByFields):
 
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-        >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+        >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
         >>> change = found.effects("output_angle")["load.inertia"]
         >>> heavier = sw.simulate(drive.replace({"load.inertia": 0.0101}), sw.scenario.step(5.0, 0.1), sample=1e-3)
         >>> actual = np.sqrt(np.mean((heavier["output_angle"] - found.run["output_angle"]) ** 2))
@@ -110,8 +111,14 @@ class Derivatives(ComparedByFields):
     def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
         return Derivatives, (self.run, dict(self.parameters), dict(self.numbers), self.values)
 
-    def __repr__(self) -> str:
-        return f"<Derivatives of {len(self.run)} samples by {', '.join(self.parameters)}>"
+    def _headline(self) -> str:
+        return f"{len(self.run)} samples by {', '.join(self.parameters)}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name in self.run.names:
+            if name != "time":
+                for path, change in self.effects(name).items():
+                    yield Row(f"{name} by {path}", change, self.run.unit(name), note="rms, by + 1 %")
 
 
 def derivatives(
@@ -152,7 +159,7 @@ def derivatives(
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> found = sw.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
+    >>> found = sw.analysis.derivatives(drive, sw.scenario.step(amplitude=5.0, duration=0.1), ["load.inertia"], sample=1e-3)
     >>> found["output_angle", "load.inertia"].shape
     (101,)
     >>> dict(found.parameters)

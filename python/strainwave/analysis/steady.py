@@ -33,15 +33,15 @@ def equilibrium(
     command: float = 0.0,
     load_torque: float = 0.0,
     temperature: float = ROOM_TEMPERATURE,
-    start: State | None = None,
+    initial: State | None = None,
 ) -> State:
     """Return the state in which nothing accelerates under constant inputs: at rest if there is one, else in steady running.
 
-    Friction and hysteresis hold a drive in many states at rest. The one returned is reached from `start` by a slow motion of
+    Friction and hysteresis hold a drive in many states at rest. The one returned is reached from `initial` by a slow motion of
     each shaft one way. A side whose set-valued friction holds it where it is sticks there; one that breaks away comes to rest
     where kinetic friction balances what drives it. Friction and hysteresis with memory remember the way.
 
-    A drive in open loop or under speed control may run instead. Its state is that at the angles of `start`, and without the
+    A drive in open loop or under speed control may run instead. Its state is that at the angles of `initial`, and without the
     kinematic error, which comes and goes with every turn; in open loop at the lowest speed, counted from rest, at which nothing
     accelerates.
 
@@ -52,7 +52,7 @@ def equilibrium(
             one in open loop
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K]
-        start: where the way begins, taken at rest; at rest, untwisted, if not given
+        initial: where the way begins, taken at rest; at rest, untwisted, if not given
 
     Returns:
         A state, for `simulate` to start from or `linearise` to look around in.
@@ -65,14 +65,14 @@ def equilibrium(
 
     >>> import strainwave as sw
     >>> arm = sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0)
-    >>> held = sw.equilibrium(sw.Drive(load=arm), command=0.5)
+    >>> held = sw.analysis.equilibrium(sw.Drive(load=arm), command=0.5)
     >>> held.input_speed, held.output_speed
     (0.0, 0.0)
     """
     check_continuous(arguments.drive(drive), "equilibrium")
     _check_uncounted(drive)
     inputs = constant_inputs(command, load_torque, temperature)
-    begin = _at_rest(drive, (drive.rest() if start is None else start_of(drive, start)).numbers)
+    begin = _at_rest(drive, (drive.rest() if initial is None else start_of(drive, initial)).numbers)
     balanced, numbers = drive, _resting(drive, begin, inputs)
     if numbers is None:
         try:
@@ -220,7 +220,7 @@ def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
     for _ in range(TIMES_TO_REST):
         try:
             with warnings.catch_warnings(action="ignore"):
-                run = simulate(drive, held, sample=duration, start=now, load_torque=load_torque, temperature=temperature)
+                run = simulate(drive, held, sample=duration, initial=now, load_torque=load_torque, temperature=temperature)
                 now = run.end
         except (ValueError, FloatingPointError):
             return None

@@ -43,7 +43,7 @@ def strokes_apart(first: Drive, second: Drive, strokes: ArrayLike, duration: flo
 
     >>> import strainwave as sw
     >>> full, simplified = sw.load("position-drive-full-friction"), sw.load("position-drive")
-    >>> apart = sw.strokes_apart(full, simplified, [1.0, 100.0])
+    >>> apart = sw.analysis.strokes_apart(full, simplified, [1.0, 100.0])
     >>> [round(1e6 * size) for size in apart["output_angle"].tolist()]  # urad
     [24, 257]
     """
@@ -83,7 +83,7 @@ def stroke_within(apart: Recording, tolerance: ArrayLike, column: str = "output_
     >>> import strainwave as sw
     >>> columns = {"stroke": [1.0, 2.0, 3.0], "output_angle": [1e-4, 2e-4, 4e-4]}
     >>> apart = sw.Recording(columns, dict.fromkeys(columns, "rad"))
-    >>> sw.stroke_within(apart, 3e-4), sw.stroke_within(apart, 1e-3)
+    >>> sw.analysis.stroke_within(apart, 3e-4), sw.analysis.stroke_within(apart, 1e-3)
     (2.5, inf)
     """
     check_recording("apart", apart)

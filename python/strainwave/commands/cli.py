@@ -12,71 +12,61 @@ from typing import Annotated, Any, TextIO
 import typer
 
 from strainwave import exit_codes
-from strainwave.commands.cache import cache
-from strainwave.commands.classify import classify
 from strainwave.commands.compare import compare
 from strainwave.commands.compensate import compensate
-from strainwave.commands.compile import compile
 from strainwave.commands.dataset import dataset
 from strainwave.commands.demo import demo
 from strainwave.commands.diagnose import diagnose
 from strainwave.commands.docs import docs
 from strainwave.commands.doctor import doctor
-from strainwave.commands.drives import drives
 from strainwave.commands.export import export
-from strainwave.commands.gears import gears
+from strainwave.commands.help import Verbs
 from strainwave.commands.identify import identify
-from strainwave.commands.misalignment import misalignment
-from strainwave.commands.models import models
+from strainwave.commands.list import list_command
 from strainwave.commands.orders import orders
-from strainwave.commands.plan_experiments import plan_experiments
+from strainwave.commands.plan import plan
 from strainwave.commands.predict import predict
-from strainwave.commands.rank import rank
 from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
 from strainwave.messages import one_line, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError
 
-VERBS = (
-    identify,
-    predict,
-    rank,
-    orders,
-    diagnose,
-    misalignment,
-    plan_experiments,
-    compensate,
-    demo,
-    simulate,
-    dataset,
-    classify,
-    compare,
-    show,
-    gears,
-    drives,
-    models,
-    cache,
-    compile,
-    doctor,
-    docs,
-)
-WITH_COLUMNS = {"identify", "predict", "rank", "orders", "diagnose"}  # verbs with the options --column and --unit
+# Verbs, and rooms of several verbs, under the headings of the help.
+HEADINGS: dict[str, dict[str, Any]] = {
+    "From measurements": {"identify": identify, "predict": predict, "orders": orders, "plan": plan, "rig": rig},
+    "With a model": {"simulate": simulate, "compensate": compensate, "export": export, "compare": compare},
+    "Faults": {"diagnose": diagnose, "dataset": dataset},
+    "Look and check": {"demo": demo, "list": list_command, "show": show, "docs": docs, "doctor": doctor},
+}
+WITH_COLUMNS = {"identify", "predict", "orders", "diagnose"}  # verbs with the options --column and --unit
 WITH_ALL_JOINTS = {"identify", "diagnose"}
 ANSWERS_OF_RIG = {"--column", "--unit", "--side"}
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 
+
+class Command(Verbs):
+    """The whole command, whose verbs are in the order of their headings."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return [name for verbs in HEADINGS.values() for name in verbs]
+
+
 app = typer.Typer(
+    cls=Command,
     help="Strain wave gears: measurements in, a validated model of that gear out.",
-    add_completion=False,
+    epilog="Exit codes, files and examples: `strainwave docs command-line`.",
+    context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode=None,  # plain help: rich alone takes longer to import than the help may take to appear
     pretty_exceptions_enable=False,
 )
-app.add_typer(rig, name="rig")
-app.add_typer(export, name="export")
-for verb in VERBS:
-    app.command()(verb)
+for heading, verbs in HEADINGS.items():
+    for name, verb in verbs.items():
+        if isinstance(verb, typer.Typer):
+            app.add_typer(verb, name=name, rich_help_panel=heading)
+        else:
+            app.command(name, rich_help_panel=heading)(verb)
 
 
 def _show_version(wanted: bool) -> None:

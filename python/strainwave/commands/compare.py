@@ -29,6 +29,10 @@ def compare(
 
     Of two gears or drives all numbers are compared; with --measured both are run under the measured command; with --stroke
     both make moves of growing stroke, and the largest that agrees within the tolerance is printed.
+
+    Examples:
+        strainwave compare hfuc-20-80 gear.toml
+        strainwave compare position-drive-full-friction position-drive
     """
     from strainwave.analysis.compare import compare as compared
     from strainwave.files.gear_set import GearSet

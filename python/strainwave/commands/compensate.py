@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.progress import progress
+from strainwave.commands.options import Drive, folder
 
 
 def compensate(
-    drive: Annotated[str, typer.Argument(help="A drive with motor and load: a set by name, or a file as identify writes it.")],
+    drive: Drive,
     goal: Annotated[
         str, typer.Option(help="position (to and fro), speed (constant), smooth (creeping) or torque.")
     ] = "position",
@@ -25,22 +25,27 @@ def compensate(
     ] = None,
     members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
     seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
-    out: Annotated[Path, typer.Option(help="Folder for the files written.")] = Path("out/compensate"),
+    out: Annotated[Path, folder("Folder for the files written.")] = Path("out/compensate"),
 ) -> None:
-    """Find the compensation that gains most over a tuned cascade, judged on gears that the drive may have."""
+    """Find the compensation that gains most over a tuned cascade.
+
+    It is judged on gears that the drive may have: members of a draw from what is known of its numbers.
+
+    Examples:
+        strainwave compensate gear.toml --goal smooth --members 5
+        strainwave compensate gear.toml --goal speed --members 5
+    """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.report.compensate import compensate_files, compensate_summary
     from strainwave.report.provenance import Provenance
     from strainwave.tuning.compensate import compensate as compensated
 
-    with progress(None) as turn:
-        found = compensated(
-            GearSet.read(drive), goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed,
-            torque=torque, members=members, seed=seed, progress=turn,
-        )  # fmt: skip
-        turn("report")
-        files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
-        write_folder(out, files)
+    found = compensated(
+        GearSet.read(drive), goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed,
+        torque=torque, members=members, seed=seed,
+    )  # fmt: skip
+    files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
+    write_folder(out, files)
     print(compensate_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")

@@ -1,9 +1,9 @@
-"""The command `strainwave diagnose`: recordings of a joint against noise and a healthy baseline."""
+"""The verbs under `diagnose`: recordings of a joint against noise and a healthy baseline, and what they can show."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,9 +11,11 @@ import typer
 
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
-from strainwave.commands.options import numeric, with_groups
-from strainwave.commands.progress import progress
+from strainwave.commands.help import Verbs
+from strainwave.commands.misalignment import misalignment
+from strainwave.commands.options import Drive, folder, numeric, with_groups
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
+from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS, QuestionError
 
 if TYPE_CHECKING:
@@ -23,54 +25,17 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
 PLANNED_ORDERS = (2.0, 1.0, 4.0)  # per revolution of the input: of the wave generator
-PLANNED_SAMPLE_RATE = 1000.0  # Hz, of the current
 BEARING_NUMBERS = (3, 4)  # of an option --bearing, without and with the contact angle
 
 
-@dataclass(frozen=True)
-class RecordingPlanOptions:
-    """Options of a planned recording."""
-
-    plan: Annotated[bool, typer.Option("--plan", help="Compute what a recording of the drive --gear would show.")] = False
-    speed: Annotated[float | None, numeric("With --plan: speed of the input, in rad/s.")] = None
-    load: Annotated[float | None, numeric("With --plan: torque at the output against the motion, in N.m; usually none.")] = None
-    duration: Annotated[float | None, numeric("With --plan: length of the record, in s.")] = None
-    noise: Annotated[float | None, numeric("With --plan: standard deviation of a sample of the current, in A.")] = None
-    sample_rate: Annotated[
-        float | None, numeric(f"With --plan: samples of the current per second, in Hz; usually {PLANNED_SAMPLE_RATE:g}.")
-    ] = None
-    probability: Annotated[
-        float | None, numeric(f"With --plan: that such an error is found; usually {DETECTION_PROBABILITY:g}.")
-    ] = None
-
-    def check_alone(self, given: dict[str, object]) -> None:
-        """Raise ValueError for an option or a recording that a plan does not use."""
-        if unused := [name for name, value in given.items() if value not in (None, False, [])]:
-            raise ValueError(
-                f"--plan simulates the drive --gear and does not use {unused[0]}: leave it out, or leave --plan out"
-            )
-
-    def check_unused(self) -> None:
-        """Raise ValueError for an option of a plan without --plan."""
-        names = ("speed", "load", "duration", "noise", "sample_rate", "probability")
-        if given := [f"--{name.replace('_', '-')}" for name in names if getattr(self, name) is not None]:
-            raise ValueError(f"{given[0]} belongs to a planned recording: add --plan, or leave it out")
-
-    def needed(self, name: str) -> float:
-        """Return an option that a plan cannot do without."""
-        value = getattr(self, name)
-        if value is None:
-            raise ValueError(f"--plan needs --{name.replace('_', '-')}: add it")
-        return float(value)
+diagnose = typer.Typer(cls=Verbs, help="Diagnose a joint, and compute what recordings can show.")
 
 
+@diagnose.command()
 @with_groups
-def diagnose(
+def joint(
+    paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Recordings of a joint, in the order of time.")],
     given: FileOptions,
-    planned: RecordingPlanOptions,
-    paths: Annotated[
-        list[Path] | None, typer.Argument(metavar="RECORDING…", help="Recordings of a joint, in the order of time.")
-    ] = None,
     gear: Annotated[str | None, typer.Option(help="Gear of the joint: a set by name, or a gear file.")] = None,
     baseline: Annotated[
         list[Path] | None, typer.Option(help="Recording of the healthy joint, or a folder of them; repeat as needed.")
@@ -96,34 +61,19 @@ def diagnose(
     geometry: Annotated[
         bool, typer.Option("--geometry", help="Estimate the misalignment too: recordings are ramps from the zero of the drive.")
     ] = False,
-    out: Annotated[Path, typer.Option(help="Folder for report.html and the numbers.")] = Path("out/diagnose"),
+    out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
 ) -> None:
-    """Diagnose the gear of a joint from torque or current: each order against noise and against the healthy joint.
+    r"""Diagnose a joint from its torque or motor current.
 
-    Without a baseline lines are compared with noise and with the expected values of the gear alone. A recording without an
-    alarm is no proof of health: the report contains the smallest change that would be one. The exit code is 3 if a recording
-    differs from the baseline. With --plan no recording is needed: the drive is simulated, and the smallest error that a record
-    would show is printed.
+    Each order of the gear is compared with noise, and with the healthy joint. Without a baseline lines are compared with noise
+    and with the expected values of the gear alone. A recording without an alarm is no proof of health: the report contains the
+    smallest change that would be one. The exit code is 3 if a recording differs from the baseline.
+
+    Examples:
+        strainwave diagnose joint robot_log.csv --gear hfuc-20-80
+        strainwave diagnose joint robot_log_later.csv --gear gear.toml \
+          --baseline robot_log.csv
     """
-    if planned.plan:
-        planned.check_alone(
-            {
-                "recordings": paths,
-                "--baseline": baseline,
-                "--bearing": bearing,
-                "--ratio": ratio,
-                "--rate": rate,
-                "--hours": hours,
-                "--threshold": threshold,
-                "--geometry": geometry,
-            }
-            | {f"--{each.name}": getattr(given, each.name) for each in fields(given)}
-        )
-        _plan(gear, planned, order or [], false_alarm, out)
-        return
-    planned.check_unused()
-    if not paths:
-        raise ValueError("no recording is given: name one or more files, or add --plan for what a recording would show")
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.source import distinct_names, measurement_files
     from strainwave.report.diagnose import diagnose_files, diagnose_summary
@@ -136,11 +86,13 @@ def diagnose(
     names = distinct_names(opened)
     by_name = _hours(hours, [names[file.path] for file in files.files])
     if geometry and (question.gear_set is None or question.gear_set.motor is None):
-        raise ValueError("--geometry needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
+        raise ValueError(
+            "--geometry needs --gear with a drive: a set that `strainwave list drives` names, or a file with a motor"
+        )
     question = replace(question, hours=by_name, ramp_drive=question.gear_set if geometry else None)
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]
-    with progress() as turn:
+    with in_turn(None) as turn:
         joints = _joints(files, mapping) if given.joint == ALL_JOINTS else (given.joint,)
         found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
@@ -152,49 +104,57 @@ def diagnose(
         raise typer.Exit(exit_codes.RESULT_CONTRADICTED)
 
 
-def _plan(gear: str | None, planned: RecordingPlanOptions, orders: Sequence[str], false_alarm: float, out: Path) -> None:
-    """Write and print the detection limits of a drive."""
+@diagnose.command()
+def limit(
+    drive: Drive,
+    speed: Annotated[float, numeric("Speed of the input, in rad/s.")],
+    duration: Annotated[float, numeric("Length of the record, in s.")],
+    noise: Annotated[float, numeric("Standard deviation of a sample of the current, in A.")],
+    torque: Annotated[float, numeric("Torque at the output against the motion, in N.m.")] = 0.0,
+    rate: Annotated[float, numeric("Samples of the current per second, in Hz.")] = 1000.0,
+    probability: Annotated[float, numeric("That such an error is found.")] = DETECTION_PROBABILITY,
+    false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = FALSE_ALARM,
+    order: Annotated[
+        list[str] | None, typer.Option(help="Order per revolution of the input; repeat as needed. 2, 1 and 4, if not given.")
+    ] = None,
+    out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
+) -> None:
+    r"""Compute the smallest error of a gear that a record would show.
+
+    The drive is simulated; no recording is needed.
+
+    Examples:
+        strainwave diagnose limit robot-joint --speed 20 --duration 10 --noise 0.05
+        strainwave diagnose limit tilt-actuator --speed 30 --duration 20 \
+          --noise 0.05 --torque 20 --order 2
+    """
     from strainwave.commands.options import number_option
-    from strainwave.diagnose.detection_limit import detection_limit
+    from strainwave.diagnose.smallest_error import detection_limit
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary
     from strainwave.report.provenance import Provenance
 
-    if gear is None:
-        raise ValueError("--plan needs --gear with a drive: a set that `strainwave drives` lists, or a file with a motor")
-    model = GearSet.read(gear)
-    record = PlannedRecord(
-        model.name,
-        planned.needed("speed"),
-        0.0 if planned.load is None else planned.load,
-        planned.needed("duration"),
-        PLANNED_SAMPLE_RATE if planned.sample_rate is None else planned.sample_rate,
-        planned.needed("noise"),
-    )
-    wanted = [number_option(each) for each in orders] or list(PLANNED_ORDERS)
-    drive, limits = model.drive, []
-    with progress(len(wanted)) as turn:
-        for order in wanted:
-            turn(f"order {order:g}")
+    model = GearSet.read(drive)
+    record = PlannedRecord(model.name, speed, torque, duration, rate, noise)
+    orders = [number_option(each) for each in order or []] or list(PLANNED_ORDERS)
+    whole, limits = model.drive, []
+    with in_turn(None, len(orders)) as turn:
+        for one in orders:
+            turn(f"order {one:g}")
             limits.append(
                 detection_limit(
-                    drive,
-                    speed=record.speed,
-                    load_torque=record.load_torque,
-                    duration=record.duration,
-                    sample_rate=record.sample_rate,
-                    noise=record.noise,
-                    order=order,
-                    probability=DETECTION_PROBABILITY if planned.probability is None else planned.probability,
-                    false_alarm=false_alarm,
-                    tests=len(wanted),
+                    whole, speed=speed, load_torque=torque, duration=duration, sample_rate=rate, noise=noise, order=one,
+                    probability=probability, false_alarm=false_alarm, tests=len(orders),
                 )
-            )
+            )  # fmt: skip
     files = plan_files(record, limits, Provenance.of_this_command([]))
     write_folder(out, files)
     print(plan_summary(record, limits))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+
+
+diagnose.command("misalignment")(misalignment)
 
 
 def _question(

@@ -17,14 +17,22 @@ def docs(
     path: Annotated[bool, typer.Option("--path", help="Print the file, and open nothing.")] = False,
     agents: Annotated[bool, typer.Option("--agents", help="Print the guide for coding agents, as plain text.")] = False,
 ) -> None:
-    """Open the documentation in the browser, without a network."""
+    """Open the documentation in the browser, without a network.
+
+    Examples:
+        strainwave docs identify --path
+        strainwave docs --agents
+    """
     if agents:
         print(_package().joinpath("AGENTS.md").read_text("utf-8"), end="")
         return
-    folder = documentation()
+    folder = documentation() or _sources()
     if folder is None:
         raise FileNotFoundError(f"the documentation is {MISSING}")
-    found = folder / "index.html" if not page else next(iter(sorted(folder.rglob(f"{_stem(page)}.html"))), None)
+    ending = ".html" if (folder / "index.html").is_file() else ".md"
+    found = folder / f"index{ending}" if not page else next(iter(sorted(folder.rglob(f"{_stem(page)}{ending}"))), None)
+    if ending == ".md":
+        _explain_sources(page if found is None else "")
     if path:
         print(found or folder / "search.html")
         return
@@ -42,6 +50,22 @@ def documentation() -> Path | None:
     return next(
         (each for each in (package / "docs", package.parents[1] / "out" / "docs") if (each / "index.html").is_file()), None
     )
+
+
+def _sources() -> Path | None:
+    """Return the folder of the pages of a clone as they are written; None without a clone."""
+    folder = _package().parents[1] / "docs"
+    return folder if (folder / "index.md").is_file() else None
+
+
+def _explain_sources(missing: str) -> None:
+    """Print that the pages are not built; raise FileNotFoundError if none of them has the name that is wanted."""
+    import sys
+
+    built = "python3 dev.py docs builds the documentation, with theory, reference, pictures and search"
+    if missing:
+        raise FileNotFoundError(f'no page of this clone is named "{missing}"; {built}')
+    print(f"these pages are as they are written; {built}", file=sys.stderr)
 
 
 def _package() -> Path:

@@ -1,8 +1,13 @@
-"""The command `strainwave doctor`: what is installed, what is missing, and what for."""
+"""The command `strainwave doctor`: what is installed, what is missing, and what for; and the kernels."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
+
+import typer
+
+from strainwave.commands.help import Verbs
+from strainwave.commands.kernels import compile_command, kernels
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -27,8 +32,26 @@ PURPOSES = {
 CORE_WORKS = ("simulation", "identification", "reports")
 
 
-def doctor() -> None:
-    """Show what is installed and what is missing: the core, compilers, kernels, the GPU, documentation and extras."""
+doctor = typer.Typer(cls=Verbs, invoke_without_command=True)
+doctor.command("kernels")(kernels)
+doctor.command("compile")(compile_command)
+
+
+@doctor.callback()
+def check(context: typer.Context) -> None:
+    """Check the installation, and manage compiled kernels.
+
+    Without a verb: what is installed and what is missing of the core, compilers, kernels, the GPU, documentation and extras.
+
+    Examples:
+        strainwave doctor
+        strainwave doctor kernels
+    """
+    if context.invoked_subcommand is None:
+        _show_installation()
+
+
+def _show_installation() -> None:
     import platform
     from importlib.metadata import metadata, version
     from pathlib import Path
@@ -54,6 +77,7 @@ def doctor() -> None:
     _show("GPU", device or "none: no NVIDIA driver, or no device")
     found = documentation()
     _show("documentation", f"{found}; strainwave docs opens it" if found else MISSING)
+    _show("completion", "strainwave --install-completion, once for a shell")
 
     print("\nextras")
     base = _problems("")

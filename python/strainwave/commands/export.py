@@ -13,16 +13,16 @@ from types import NoneType
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
 import typer
-from typer.core import TyperGroup
 
 from strainwave.commands.drive_parts import DriveParts
-from strainwave.commands.options import numeric, whole, with_groups
+from strainwave.commands.help import Verbs
+from strainwave.commands.options import Drive, folder, numeric, whole, with_groups
 
 if TYPE_CHECKING:
     from strainwave.export.exported import Exported, Form
 
 
-class Exports(TyperGroup):
+class Exports(Verbs):
     """The verbs of all exports, made at their first use: what they import takes longer than the help of others may take."""
 
     def list_commands(self, ctx: Any) -> list[str]:
@@ -37,12 +37,14 @@ class Exports(TyperGroup):
         return super().get_command(ctx, cmd_name)
 
 
-export = typer.Typer(cls=Exports, help="Write a gear in the form of another program, and state what that form loses.")
+export = typer.Typer(cls=Exports, help="Write a gear or drive for another program, with what it loses.")
 
 Gear = Annotated[str, typer.Argument(help="A gear or drive: a set by name, or a file as identify writes it.")]
-Drive = Annotated[str, typer.Argument(help="A drive: a set with a motor and a load, by name or as a file.")]
 MODELS = {"gear": Gear, "drive": Drive}
-Out = Annotated[Path, typer.Option(help="Folder for the files written.", file_okay=False)]
+Out = Annotated[Path, folder("Folder for the files written.")]
+
+
+EXAMPLE_WORDS = {"name": "viscous-coulomb-scale"}  # of arguments without a default, in the examples of the help
 
 
 class Conversion(NamedTuple):
@@ -50,6 +52,10 @@ class Conversion(NamedTuple):
 
     annotation: Any
     argument: Callable[[Any], Any]
+
+
+def _itself(path: Path | None) -> Path | None:
+    return path
 
 
 def _with_binaries(platforms: list[str] | None) -> list[str] | None:
@@ -79,8 +85,8 @@ def verb_of(form: Form) -> Any:
     from strainwave.files.gear_set import GearSet
 
     summary, meanings = described(form.write)
-    model, *others = signature(form.write, eval_str=True).parameters.values()
-    first = model.replace(name=form.model, annotation=MODELS[form.model])
+    first, *others = signature(form.write, eval_str=True).parameters.values()
+    first = first.replace(name=form.model, annotation=MODELS[form.model])
     options = [option for each in others for option in option_of(each, meanings)]
     own = {each.name for each in options}
     parts = [each for each in signature(DriveParts, eval_str=True).parameters.values() if each.name not in own]
@@ -97,7 +103,10 @@ def verb_of(form: Form) -> Any:
     verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]
     verb.__annotations__ = {each.name: each.annotation for each in parameters}
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-    alone.command(form.verb, help=summary)(verb)
+    torque = " --max-torque 40" if "max_torque" in meanings else ""  # an identified gear may have no rating
+    words = " ".join(["", *(EXAMPLE_WORDS[each.name] for each in options if each.default is Parameter.empty)])
+    examples = [f"    strainwave export {form.verb} {model}{words}" for model in ("robot-joint", f"gear.toml{torque}")]
+    alone.command(form.verb, help="\n".join([summary, "\nExamples:", *examples]))(verb)
     return typer.main.get_command(alone)
 
 
@@ -163,7 +172,12 @@ def firmware(
     ] = None,
     out: Out = Path("out/firmware"),
 ) -> None:
-    """A part of a drive for a microcontroller: a header of C++20 without includes, with an interface in C."""
+    """A part of a drive for a microcontroller: a header of C++20 without includes, with an interface in C.
+
+    Examples:
+        strainwave export firmware robot-joint
+        strainwave export firmware hfuc-20-80 --part gear.friction_input
+    """
     from strainwave.export.firmware import firmware as exported
     from strainwave.files.gear_set import GearSet
 
@@ -187,7 +201,12 @@ def from_bam(
     ratio: Annotated[float, numeric("Ratio of the gear, which BAM does not state.")],
     out: Annotated[Path, typer.Option(help="Gear file to write.")] = Path("out/gear.toml"),
 ) -> None:
-    """A gear file from parameters of BAM."""
+    """A gear file from parameters of BAM.
+
+    Examples:
+        strainwave export from-bam out/bam/bam.json --ratio 80
+        strainwave export from-bam out/bam/bam.json --ratio 80 --out joint.toml
+    """
     from strainwave.export.bam_parameters import read_bam
 
     found = read_bam(file, ratio)

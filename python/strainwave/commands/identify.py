@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,8 +10,8 @@ import typer
 
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
-from strainwave.commands.options import with_groups
-from strainwave.commands.progress import progress
+from strainwave.commands.options import folder, with_groups
+from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS
 
 if TYPE_CHECKING:
@@ -24,21 +24,38 @@ def identify(
     gear: Gear,
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Measurements of one gear, or folders of them.")],
     given: FileOptions,
+    rank: Annotated[
+        bool, typer.Option("--rank", help="Also fit every model of each file, and rank them by their error on held-out data.")
+    ] = False,
     accept: Annotated[bool, typer.Option("--accept", help="Use files and write the gear although a check fails.")] = False,
     name: Annotated[str | None, typer.Option(help="Name of the gear; by default that of its files.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
+    out: Annotated[Path, folder("Folder for report.html, the gear and the numbers.")] = Path("out/identify"),
 ) -> None:
-    """Determine the type of measurement files, and the gear that they show.
+    r"""Identify a gear from measurement files.
 
     Tables of friction, torsion loops, logs of the drive in motion and records of two encoders, in any order: each file is
     fitted by itself, with the reasons for its type. Of files that agree about a parameter the mean is taken. If a consistency
     check fails, it is printed first, no gear is written, and the exit code is 3.
+
+    With --rank the model to take stands first in a table of each file: the simplest whose error exceeds the smallest by no more
+    than chance explains. The correlation of residuals shows what a model leaves unexplained; 1 is white noise.
+
+    Examples:
+        strainwave identify hfuc-20-80 robot_log.csv \
+          --constant torque_constant=0.0755
+        strainwave identify hfuc-20-80 friction.csv --rank
     """
     from strainwave.identification.reading.source import measurement_files
 
+    if rank and given.joint == ALL_JOINTS:
+        raise ValueError("--rank ranks the models of one joint: give its name as --joint, or leave --rank out")
     opened = measurement_files(paths)
     fit = _every_joint if given.joint == ALL_JOINTS else _one_gear
-    if fit(gear, opened, given.mapping_of(opened.files), accept, name, out) and not accept:
+    mapping = given.mapping_of(opened.files)
+    failed = fit(gear, opened, mapping, accept, name, out)
+    if rank:
+        print("", *_ranking(gear, opened, mapping), sep="\n")
+    if failed and not accept:
         print("a gear with a failed check is not written: settle it, or --accept writes it")
         raise typer.Exit(exit_codes.RESULT_CONTRADICTED)
 
@@ -50,20 +67,41 @@ def _one_gear(
     from strainwave.files.writing import write_folder
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.results.drive import not_written
+    from strainwave.report.first_screen import next_lines
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
     read = paths_in(opened)
-    with progress(len(read)) as turn:
-        found = identified(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
-        turn("report")
-        files = identify_files(found, Provenance.of_this_command(read), accepted=accept)
-        write_folder(out, files)
+    found = identified(gear, opened, mapping=mapping, accept=accept, name=name)
+    files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
+    write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
-    if "gear.toml" in files and (lacking := not_written(found.files)):
-        print(f"gear.toml: {found.gear_set.name}, {lacking}")
+    if "gear.toml" in files:
+        if lacking := not_written(found.files):
+            print(f"gear.toml: {found.gear_set.name}, {lacking}")
+        print("\n".join(next_lines(found, out)))
     return bool(found.failed)
+
+
+def _ranking(gear: str, opened: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> Iterator[str]:
+    """Yield the lines of a table of all models for each file that can be used."""
+    from strainwave.files.gear_set import GearSet
+    from strainwave.identification.identify import read_measurements
+    from strainwave.identification.kinds import KINDS
+    from strainwave.identification.rank import rank, table_of
+    from strainwave.identification.reading.recognise import Recognised
+
+    with in_turn(None, len(opened.files)) as turn:
+        read, start = read_measurements(opened, mapping, GearSet.read(gear))
+        for path, file in read.items():
+            turn(path.name)
+            if isinstance(file, Recognised):
+                try:
+                    lines = table_of(rank(start, file))
+                except ValueError as error:
+                    lines = [f"not ranked: {error}"]
+                yield from (f"{path.name}: {KINDS[file.kind].title}", *(f"  {line}" for line in lines))
 
 
 def _every_joint(
@@ -76,13 +114,11 @@ def _every_joint(
     from strainwave.report.joints import folder_of, joints_files, joints_summary
     from strainwave.report.provenance import Provenance
 
-    with progress() as turn:
-        joints = identify_joints(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
-        turn("report")
-        provenance = Provenance.of_this_command(paths_in(opened))
-        for joint, found in joints.found.items():
-            write_folder(out / folder_of(joint), identify_files(found, provenance, accepted=accept))
-        write_folder(out, joints_files(joints, provenance))
+    joints = identify_joints(gear, opened, mapping=mapping, accept=accept, name=name)
+    provenance = Provenance.of_this_command(paths_in(opened))
+    for joint, found in joints.found.items():
+        write_folder(out / folder_of(joint), identify_files(found, provenance, accepted=accept, folder=out / folder_of(joint)))
+    write_folder(out, joints_files(joints, provenance))
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))
     print(f"\nwrote {out / 'report.html'}, and beside it joints.csv and the results of each joint in {folders}")

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import is_dataclass
 from functools import wraps
 from inspect import Parameter, signature
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
 from strainwave.messages import quoted
 from strainwave.number_texts import is_whole, number_in
+
+Drive = Annotated[str, typer.Argument(help="A drive: a set of `strainwave list drives`, or a file with motor and load.")]
 
 
 def with_groups(verb: Callable[..., None]) -> Callable[..., None]:
@@ -32,6 +34,11 @@ def with_groups(verb: Callable[..., None]) -> Callable[..., None]:
     expanded.__signature__ = own.replace(parameters=parameters)  # type: ignore[attr-defined]
     expanded.__annotations__ = {each.name: each.annotation for each in parameters}
     return expanded
+
+
+def folder(help: str) -> Any:
+    """Return the option for the folder of the results."""
+    return typer.Option("--out", "-o", help=help, file_okay=False)
 
 
 def numeric(help: str) -> Any:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from strainwave.commands.file_options import FileOptions
-from strainwave.commands.options import numeric, with_groups
-from strainwave.commands.progress import progress
+from strainwave.commands.options import folder, numeric, with_groups
+from strainwave.progress import in_turn
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile
@@ -24,13 +24,17 @@ def orders(
     ratio: Annotated[float | None, numeric("Ratio of the gear, with all its digits; found, if the file determines it.")] = None,
     rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
     highest: Annotated[float | None, numeric("Order up to which ripple is looked for, at most 100000.")] = None,
-    out: Annotated[Path, typer.Option(help="Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
+    out: Annotated[Path, folder("Folder for report.html, the numbers and the spectra.")] = Path("out/orders"),
 ) -> None:
-    """Find the orders of a gear: its kinematic error from two encoders, its ripple from torque or current.
+    """Find kinematic error, ripple and ratio of a gear in recordings.
 
     The angles of both shafts determine ratio, kinematic error and lost motion. Torque or current and one angle determine the
     lines that repeat with the angle, and from them the ratio. Lines that repeat with time, as mains and resonances, are
     separated if the speed varies; lines of other joints that move, if their angles are in the file.
+
+    Examples:
+        strainwave orders robot_log.csv
+        strainwave orders robot_log.csv --ratio 80 --out out/ripple
     """
     from strainwave.arguments import number
     from strainwave.files.gear_set import catalogue
@@ -38,7 +42,7 @@ def orders(
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.identification.reading.source import MeasurementFile
     from strainwave.messages import one_line
-    from strainwave.orders.ripple import MAX_ORDER
+    from strainwave.orders.torque_ripple import MAX_ORDER
     from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
     from strainwave.report.provenance import Provenance
@@ -53,7 +57,7 @@ def orders(
             f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
         )
     runs = [run for path in paths for run in MeasurementFile(path).runs]
-    with progress(len(runs)) as turn:
+    with in_turn(None, len(runs)) as turn:
         found = []
         for run in runs:
             turn(run.path.name)

@@ -9,8 +9,7 @@ import typer
 
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
-from strainwave.commands.options import with_groups
-from strainwave.commands.progress import progress
+from strainwave.commands.options import folder, with_groups
 
 
 @with_groups
@@ -18,12 +17,17 @@ def predict(
     gear: Annotated[str, typer.Argument(help="The saved gear or drive, as gear.toml of identify, or a set by name.")],
     paths: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Later recordings of this gear, or folders of them.")],
     given: FileOptions,
-    out: Annotated[Path, typer.Option(help="Folder for report.html and the numbers.")] = Path("out/predict"),
+    out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/predict"),
 ) -> None:
-    """Compare later recordings with what a saved gear or drive predicts, and report what changed.
+    r"""Compare later recordings with the prediction of a saved gear.
 
     Logs of a drive in motion need a load in the saved file; tables of friction do not. Recordings are read as by identify. If
     one contradicts the saved gear, the exit code is 3.
+
+    Examples:
+        strainwave predict gear.toml robot_log_later.csv \
+          --constant torque_constant=0.0755
+        strainwave predict gear.toml friction.csv
     """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
@@ -34,11 +38,9 @@ def predict(
 
     saved, opened = GearSet.read(gear), measurement_files(paths)
     read = paths_in(opened)
-    with progress(len(read)) as turn:
-        found = predicted(saved, opened, mapping=given.mapping_of(opened.files), progress=turn)
-        turn("report")
-        files = predict_files(found, saved, Provenance.of_this_command(read))
-        write_folder(out, files)
+    found = predicted(saved, opened, mapping=given.mapping_of(opened.files))
+    files = predict_files(found, saved, Provenance.of_this_command(read))
+    write_folder(out, files)
     print(predict_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     if any(each.contradicts for each in found):

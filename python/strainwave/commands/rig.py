@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from strainwave.commands.options import numeric, whole, with_groups
+from strainwave.commands.help import Verbs
+from strainwave.commands.options import folder, numeric, whole, with_groups
 from strainwave.number_texts import number_in
 
 if TYPE_CHECKING:
@@ -25,9 +26,9 @@ if TYPE_CHECKING:
     from strainwave.rig.running.plan import Pans, Plan
     from strainwave.rig.running.sources import PictureSource
 
-rig = typer.Typer(help="Test the torsional stiffness of a gear: plan, measure, analyse, simulate.")
+rig = typer.Typer(cls=Verbs, help="Plan, make and analyse tests of torsional stiffness.")
 
-DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
+ARTICLE = "torsional-stiffness-article"  # the gears of the torsional stiffness article's Table 2, as `gear_named` knows them
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
@@ -41,7 +42,7 @@ class PlanOptions:
     torque: Annotated[float, numeric("Peak torque in N.m; the nearest that the masses make is taken.")] = 0.36
     step: Annotated[float | None, numeric("Step of the torque in N.m; by default the smallest that the masses make.")] = None
     positions: Annotated[str, typer.Option(help="Positions of the flexspline in its mount in degrees.")] = "0,60,120"
-    units: Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")] = ""
+    specimens: Annotated[str, typer.Option(help="Names of the specimens, as A,B; one without a name, if not given.")] = ""
     cycles: Annotated[int, whole("Cycles at each position, one after the other.")] = 1
     unequal: Annotated[
         bool, typer.Option("--unequal", help="Let both pans of a pair differ by one mass: half the step, but no pure couple.")
@@ -56,9 +57,9 @@ class PlanOptions:
         from strainwave.rig.running.plan import plan
 
         places = [radians(each) for each in _numbers("--positions", self.positions)]
-        specimens = [each.strip() for each in self.units.split(",")]
+        specimens = [each.strip() for each in self.specimens.split(",")]
         if len(set(places)) < len(places) or len(set(specimens)) < len(specimens):
-            raise ValueError("--positions and --units must each name a thing once; --cycles repeats a position")
+            raise ValueError("--positions and --specimens must each name a thing once; --cycles repeats a position")
         pans: Pans = "unequal" if self.unequal else "equal"
         return plan(bench, self.torque, step=self.step, pans=pans, positions=places, units=specimens, cycles=self.cycles)
 
@@ -75,7 +76,12 @@ def plan_command(
 ) -> None:
     """Print what to lay on the pans and take off, step by step.
 
-    The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
+    The cycle is the torsional stiffness article's: the positive peak, down to zero, to the negative peak, back to zero, and up
+    to the positive peak.
+
+    Examples:
+        strainwave rig plan --torque 0.3 --positions 0
+        strainwave rig plan --out steps.csv
     """
     from strainwave.rig.bench.steps_file import write_steps
 
@@ -93,15 +99,22 @@ def plan_command(
 @with_groups
 def simulate(
     gear: Annotated[
-        str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
-    ] = DOCUMENT_T,
+        str,
+        typer.Argument(help="A set by name, a gear file, or torsional-stiffness-article: the gears of its Table 2."),
+    ] = ARTICLE,
     name: RigOption = "couple-rig",
-    out: Annotated[Path, typer.Option(help="Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
+    out: Annotated[Path, folder("Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
     options: PlanOptions = USUAL_PLAN,
     seed: Annotated[int, whole("Of the noise of the photographs.")] = 0,
 ) -> None:
-    """Make a virtual test: photographs, masses and rig as a real test leaves them, and the true values."""
-    import sys
+    """Make a virtual test, as a real one leaves its folder.
+
+    It contains photographs, masses and rig, and the true values.
+
+    Examples:
+        strainwave rig simulate --positions 0 --out rehearsal
+        strainwave rig simulate hfuc-20-80 --positions 0 --out hfuc
+    """
 
     from strainwave.rig.bench.steps_file import write_steps
     from strainwave.rig.reading.measurement import PLAN
@@ -111,12 +124,12 @@ def simulate(
     bench = _rig(name)
     made = options.plan(bench)
     steps = made.steps
-    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
+    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed)
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     if abs(made.peak - options.torque) > 1e-9 * options.torque:
         print(f"the peak is {made.peak:.4f} N.m: {options.torque:g} N.m is no step of the masses")
-    if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
+    if gear == ARTICLE and (short := narrower(sorted({each.position for each in steps}), made.peak)):
         print(*short, sep="\n")
         print("more torque, or --unequal, which halves the steps, may reach it")
     print(f"to analyse it: strainwave rig analyse {out}")
@@ -128,20 +141,25 @@ def measure(
     camera: Annotated[
         str, typer.Option(help="Number of a camera, a folder that another program fills with photographs, or virtual.")
     ],
-    out: Annotated[Path, typer.Option(help="Folder of the test; one that was broken off goes on.")] = Path("out/rig-test"),
+    out: Annotated[Path, folder("Folder of the test; one that was broken off goes on.")] = Path("out/rig-test"),
     name: Annotated[
         str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
     ] = None,
     options: PlanOptions = USUAL_PLAN,
-    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
+    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = ARTICLE,
     pictures: Annotated[int, whole("Photographs in a row that must agree before a step counts as at rest.")] = 5,
     interval: Annotated[float, numeric("Time between two photographs in s.")] = 0.5,
     patience: Annotated[float, numeric("Time in s after which a shaft that still moves is reported.")] = 60.0,
 ) -> None:
-    """Guide a test step by step, and write each step down as soon as it is done.
+    """Guide a test step by step.
 
-    Prints which masses to move, waits until the shaft rests, and keeps the photograph. `steps.csv` in the folder of the test
-    holds what was done; Ctrl-C, or q, breaks off, and the same command goes on.
+    Each step is written down as soon as it is done. Prints which masses to move, waits until the shaft rests, and
+    keeps the photograph. `steps.csv` in the folder of the test holds what was done; Ctrl-C, or q, breaks off, and the same
+    command goes on.
+
+    Examples:
+        strainwave rig measure --camera virtual --positions 0
+        strainwave rig measure --camera 0 --out test
     """
     from rich.console import Console
 
@@ -187,44 +205,41 @@ def analyse(
         list[str] | None, typer.Option(help="Unit of a column of FILE whose header has none, as torque=N.m; repeat as needed.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
+        Path | None, folder("Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
     ] = None,
 ) -> None:
-    """Turn photographs and masses, or measured loops, into stiffness, lost motion, and a report.
+    """Analyse a test: stiffness, lost motion and a report.
 
     Writes report.html, results.json, and of each loop and of the angles a .csv and a .parquet file. Loops are written as
     measured, with friction inside. The photographs stay where they are; the report has their hashes.
-    """
-    from rich.console import Console
 
+    Examples:
+        strainwave rig analyse rehearsal
+        strainwave rig analyse rehearsal --out results
+    """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
-    from strainwave.report.results_json import results_json
-    from strainwave.report.rig import rig_report, summary
-    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
+    from strainwave.report.files_of import evaluation_files
+    from strainwave.report.rig import summary
+    from strainwave.report.rig_files import loop_names
     from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
     target = _target(paths, out)
-    with Console(stderr=True).status("reading") as status:
-        given = EvaluationOptions(
-            rig=None if name is None else _rig(name),
-            gear_set=None if gear is None else GearSet.read(gear),
-            rated_torque=rated_torque,
-            reference=reference,
-            friction=friction,
-            positions=None if positions is None else _numbers("--positions", positions),
-            columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
-            units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
-        )
-        found, read = evaluate_paths(paths, given, status.update)
-        status.update("report")
-        provenance = _provenance(read)
-        files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-        files["results.json"] = results_json(results(found, provenance.date))
-        files["report.html"] = rig_report(found, provenance, list(files))
-        write_folder(target, files)
+    given = EvaluationOptions(
+        rig=None if name is None else _rig(name),
+        gear_set=None if gear is None else GearSet.read(gear),
+        rated_torque=rated_torque,
+        reference=reference,
+        friction=friction,
+        positions=None if positions is None else _numbers("--positions", positions),
+        columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
+        units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
+    )
+    found, read = evaluate_paths(paths, given)
+    files = evaluation_files(found, _provenance(read))
+    write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
     if left := [each for each in there if each not in files]:
@@ -247,7 +262,12 @@ def watch(
     idle: Annotated[float | None, numeric("End when no photograph came for so many s; never, if not given.")] = None,
     interval: Annotated[float, numeric("Time between two looks in s.")] = 0.5,
 ) -> None:
-    """Follow a folder while a test is being run, and draw its loop as it grows; Ctrl-C ends."""
+    """Draw the loop of a test that is being run; Ctrl-C ends.
+
+    Examples:
+        strainwave rig watch rehearsal --idle 1
+        strainwave rig watch rehearsal --idle 1 --plan rehearsal/plan.csv
+    """
     from rich.console import Console
 
     from strainwave.files.folder import inside
@@ -282,12 +302,17 @@ def influence(
         list[str] | None,
         typer.Option(help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop."),
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for report.html.")] = Path("out/rig-influence"),
+    out: Annotated[Path, folder("Folder for report.html.")] = Path("out/rig-influence"),
 ) -> None:
-    """Test a measured series of torsion loops for trends over what was varied.
+    r"""Test a series of torsion loops for trends.
 
     Prints the dependence of area, width and stiffness on torque level, temperature, preload, ratio, modulus, cycles and hours,
     each with its 95 % interval and its probabilities.
+
+    Examples:
+        strainwave rig influence --loop "cold.csv,temperature=5 degC" \
+          --loop "warm.csv,temperature=40 degC"
+        strainwave rig influence --measured series.csv
     """
     from strainwave.files.writing import write_folder
     from strainwave.report.influence import influence_report, summary
@@ -337,7 +362,7 @@ def _rig(name: str) -> Rig:
 
 
 def _rig_of_test(folder: Path, name: str | None) -> Rig:
-    """The rig that was named, or that of the folder, or the one of document T."""
+    """The rig that was named, or that of the folder, or the one of the torsional stiffness article."""
     from strainwave.files.folder import inside
 
     there = inside(folder, "rig.toml")

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from strainwave.commands.options import changed_number, numeric
+from strainwave.commands.options import Drive, changed_number, numeric
 from strainwave.messages import one_line
 
 if TYPE_CHECKING:
-    from strainwave import Drive
+    import strainwave as sw
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
     from strainwave.simulation.run import Run
@@ -21,9 +20,7 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    drive: Annotated[
-        str, typer.Argument(help="A drive: a set by name (strainwave drives), or a gear file with motor and load.")
-    ],
+    drive: Drive,
     scenario: Annotated[Path, typer.Option(help="What it does: TOML, or CSV or Parquet with the columns time and command.")],
     out: Annotated[Path | None, typer.Option("--out", "-o", help="Recording to write, .parquet or .csv.")] = None,
     plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg, .png or .pdf.")] = None,
@@ -35,7 +32,12 @@ def simulate(
         list[str] | None, typer.Option("--set", help="Another number, in SI units, as load.inertia=0.6; repeat as needed.")
     ] = None,
 ) -> None:
-    """Run a drive through a scenario."""
+    """Run a drive through a scenario.
+
+    Examples:
+        strainwave simulate robot-joint --scenario move.toml
+        strainwave simulate robot-joint --scenario move.toml --plot run.svg
+    """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
     from strainwave.simulation.scenario_file import ScenarioFile
@@ -50,7 +52,7 @@ def simulate(
     given = ScenarioFile.read(scenario, whole)
     wanted = list(chosen(whole, record) if record else outputs(whole))
     rated = [name for name in ("torque", "input_speed") if name not in wanted]
-    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()})
+    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated]})
     title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
     recording = Recording(run.columns, run.units, title).select(["time", *wanted])
     _write_run(recording, out, plot)
@@ -73,7 +75,7 @@ def _check_target(option: str, path: Path | None, endings: tuple[str, ...], sour
         raise ValueError(f"{option} {path} is the file of the scenario; give another name")
 
 
-def _run(given: ScenarioFile, drive: Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:
+def _run(given: ScenarioFile, drive: sw.Drive, dt: float | None, tolerance: float | None, options: dict[str, Any]) -> Run:
     """The run in steps of --dt, or in steps as long as --tolerance allows."""
     if tolerance is None:
         return given.simulate(drive, 2e-4 if dt is None else dt, **options)

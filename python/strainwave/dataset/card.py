@@ -48,7 +48,7 @@ def manifest(shards: Shards, schema: Any) -> str:
         "seed": plan.seed,
         "versions": {name: version(name) for name in PACKAGES} | {"python": platform.python_version()},
         "machine": platform.machine(),
-        "drive": {"gear_set": population.gear_set.name, "parts": repr(population.drive)},
+        "drive": {"gear_set": population.gear_set.name, "parts": population.drive.to_dict()["rows"]},
         "members": plan.members,
         "conditions": plan.condition_count,
         "units": plan.units.number,
@@ -83,7 +83,8 @@ def card(shards: Shards, schema: Any) -> str:
         "",
         "## How to make it again",
         "",
-        "`strainwave dataset plan.toml --out folder` makes all files again, and `--member 17` one member alone. "
+        "`strainwave dataset make plan.toml --out folder` makes all files again, and "
+        "`strainwave dataset member plan.toml 17` one member alone. "
         "Files have equal hashes with the versions of `manifest.json` on a processor of the same kind.",
         "",
         "## Faults",

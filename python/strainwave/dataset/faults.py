@@ -6,8 +6,7 @@
 
 from __future__ import annotations
 
-from cmath import phase as direction_of
-from cmath import rect
+from cmath import phase as direction_of, rect
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from math import isclose

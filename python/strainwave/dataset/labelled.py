@@ -83,7 +83,9 @@ def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, Detec
     if plan.members > MAX_RUNS:
         raise ValueError(f"{folder} has {plan.members} runs; at most {MAX_RUNS} are read at once")
     if target.done() < plan.shards:
-        raise ValueError(one_line(f"{folder} has {target.done()} of {plan.shards} shards; call strainwave dataset again first"))
+        raise ValueError(
+            one_line(f"{folder} has {target.done()} of {plan.shards} shards; call strainwave dataset make again first")
+        )
     names, columns = _columns([target.shard(number) for number in range(plan.shards)])
     sound = np.isfinite(columns["current_mean"]) if "current_mean" in columns else np.isfinite(columns[names[0]])
     severity = np.max([columns[name] for name in columns if name.startswith("severity.")], axis=0)

@@ -159,7 +159,7 @@ def _start(folder: DatasetFolder, part: int, parts: int) -> _Worker:
 def worker_command(path: Path) -> list[str]:
     """Return the command of a worker: this Python, with nothing of the caller's script or of the folder it runs in."""
     flags = ["-P", *(["-S"] if sys.flags.no_site else [])]
-    return [sys.executable, *flags, "-m", "strainwave", "dataset", "--work", f"{path.resolve()}"]
+    return [sys.executable, *flags, "-m", "strainwave", "dataset", "work", f"{path.resolve()}"]
 
 
 def _environment() -> dict[str, str]:

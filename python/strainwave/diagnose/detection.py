@@ -100,8 +100,7 @@ def detectable_change(probability: float, false_alarm: float, freedom: float) ->
     4.572
     """
     from scipy.optimize import brentq
-    from scipy.stats import nct
-    from scipy.stats import t as student
+    from scipy.stats import nct, t as student
 
     threshold = float(student.isf(0.5 * false_alarm, freedom))
     high = threshold

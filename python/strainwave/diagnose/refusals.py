@@ -13,8 +13,8 @@ from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
-from strainwave.orders.ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.shaft_pair import Pair, ratio_of
+from strainwave.orders.torque_ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.turning import evenly_turning
 from strainwave.questions import QuestionError
 from strainwave.spline_orders import WAVE_ORDER

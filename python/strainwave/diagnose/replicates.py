@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import MAX_SAMPLES
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.orders.ripple import Ripple
 from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
+from strainwave.orders.torque_ripple import Ripple
 from strainwave.statistics.floor import Floor
 from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.statistics.order_waves import amplitudes_of, order_waves

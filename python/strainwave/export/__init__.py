@@ -41,3 +41,7 @@ __all__ = [
 
 # In the order of `strainwave export --help` and of the guide to exports.
 FORMS = (JOINT, MJCF, MUJOCO_PLUGIN, NEWTON, BAM, FMU, MODELICA, ROS2, FIRMWARE, SLOT)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -44,7 +44,7 @@ class DriveNode(Node):  # type: ignore[misc] # rclpy has no types
         """Simulate a period and publish its end."""
         motion = sw.scenario.constant(self.command, self.period)
         step = self.period / max(1, round(self.period / INTERNAL_STEP))
-        run = sw.simulate(self.drive, motion, step, sample=self.period, start=self.state, record=list(OUTPUTS))
+        run = sw.simulate(self.drive, motion, step, sample=self.period, initial=self.state, record=list(OUTPUTS))
         self.state = run.end
         message = JointState()
         message.header.stamp = self.get_clock().now().to_msg()

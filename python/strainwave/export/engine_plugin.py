@@ -313,5 +313,5 @@ MUJOCO_PLUGIN = Form(
     mujoco_plugin,
     "MuJoCo on a CPU: the whole drive",
     "a library for your version of MuJoCo, and a model that uses it",
-    "mujoco-plugin.md",
+    "mujoco.md#the-whole-drive-as-a-plugin",
 )

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, ParamSpec, get_args
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.presentation import Presented
 from strainwave.tuning.loss import ExportLoss
 
 Args = ParamSpec("Args")
@@ -33,7 +34,7 @@ NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # be
 
 
 @dataclass(frozen=True)
-class Exported:
+class Exported(Presented):
     """A gear in the form of another program.
 
     Attributes:
@@ -83,7 +84,7 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
 
     >>> import strainwave as sw
     >>> gear = sw.GearSet.read("csg-20-100")
-    >>> why = sw.Entry("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
+    >>> why = sw.files.Entry("identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m")
     >>> found = sw.export.joint(gear.replace(sources={**gear.sources, "gear.friction_input.viscous": why}))
     >>> found.remarks[-1]
     'gear.friction_input.viscous: identified in combination: a.csv determines coulomb + 10 viscous = 0.064 ± 0.0001 N.m'

@@ -84,4 +84,6 @@ ABOUT = (
     "its header; topics of plain numbers are columns, too. With several topics of joint states, the topic precedes the "
     "name."
 )
-FORMAT = Format((".bag", ".mcap", ".db3"), open_bag, "Bags of ROS 1 and 2", "of the message: rad, rad/s, N.m", about=ABOUT)
+FORMAT: Format = Format(
+    (".bag", ".mcap", ".db3"), open_bag, "Bags of ROS 1 and 2", "of the message: rad, rad/s, N.m", about=ABOUT
+)

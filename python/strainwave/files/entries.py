@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from math import hypot
 
 from strainwave import arguments
-from strainwave.files.units import check as check_unit
-from strainwave.files.units import convert
+from strainwave.files.units import check as check_unit, convert
 from strainwave.messages import shortened
 
 NOT_GIVEN = "not given"
@@ -27,7 +26,7 @@ class Entry:
         ValueError: the source is no line of text, or a number is negative or not finite.
 
     >>> import strainwave as sw
-    >>> entry = sw.Entry("maker's catalogue", spread=0.3)  # single gears scatter by 30 %
+    >>> entry = sw.files.Entry("maker's catalogue", spread=0.3)  # single gears scatter by 30 %
     >>> entry.sigma(31000.0), entry.assumed
     (9300.0, False)
     """

@@ -10,21 +10,24 @@ import difflib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from math import isfinite
+from math import isfinite, nan
 from operator import attrgetter
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Protocol, TypeVar, overload, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_checkable
 
-from strainwave import Drive, arguments
-from strainwave import motor as motors
+from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
 from strainwave.files import gear_file
 from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
 from strainwave.files.tables import FORMATS
-from strainwave.messages import quoted, shortened, unquoted
+from strainwave.messages import in_a_sentence, quoted, shortened, unquoted
+from strainwave.presentation import Pictured, Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Kind = TypeVar("Kind", bound=Entry)
 _PARTS = [field["name"] for field in Drive.fields]
@@ -53,7 +56,7 @@ class FittedModel(Protocol):
 
 
 @dataclass(frozen=True)
-class GearSet:
+class GearSet(Pictured):
     """A gear, the source of each of its numbers, its ratings and the other parts of its drive.
 
     Two sets are equal if all members are, sources and ratings too. Their gears are equal if models and numbers are: as the
@@ -126,7 +129,7 @@ class GearSet:
         if missing := [name for name in ("motor", "load") if getattr(self, name) is None]:
             missing_parts = f"no [{'] and no ['.join(missing)}]"
             raise ValueError(
-                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave drives lists whole drives"
+                f"{self.name} has {missing_parts}; a drive needs a motor and a load; strainwave list drives lists whole drives"
             )
         return _drive(vars(self))
 
@@ -312,6 +315,35 @@ class GearSet:
         """
         gear_file.write(self, Path(path))
 
+    def _headline(self) -> str:
+        maker = f", {self.maker}" if self.maker else ""
+        others = [name for name in _PARTS if name != "gear" and getattr(self, name) is not None]
+        parts = f", with {in_a_sentence(others)}" if others else ""
+        return f"{self.name}{maker}{parts}: {self.gear._headline()}"
+
+    def _rows(self) -> Iterator[Row]:
+        idle = set(gear_file.idle(self))
+        for name in _PARTS:
+            if (model := getattr(self, name)) is not None:
+                for row in model._rows():
+                    path = f"{name}.{row.name}"
+                    entry = self.sources.get(path)
+                    if path not in idle:
+                        sigma = None if entry is None or not isinstance(row.value, float) else entry.sigma(row.value)
+                        source = row.note if entry is None else entry.source
+                        yield Row(path, row.value, row.unit, nan if sigma is None else sigma, source)
+        for name, rating in self.ratings.items():
+            yield Row(f"ratings.{name}", rating.value, rating.unit, note=rating.source)
+
+    def _remarks(self) -> Iterator[str]:
+        return iter([self.note] if self.note else [])
+
+    def plot(self) -> Figure:
+        """Return a figure of the gear: twist over torque, and friction over speed."""
+        from strainwave.simulation.gear_plot import gear_figure
+
+        return gear_figure(self.gear, self.name)
+
 
 def catalogue(of: str = "gears") -> list[str]:
     """Return the names of the sets that come with the package, in order.
@@ -482,7 +514,7 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
         if not isinstance(key, str):
             raise TypeError(f"a number is named by a text, not {shortened(key)}")
         if not isinstance(entry, kind):
-            raise TypeError(f"{unquoted(key)} must have a strainwave.{kind.__name__}, not {shortened(entry)}")
+            raise TypeError(f"{unquoted(key)} must have a strainwave.files.{kind.__name__}, not {shortened(entry)}")
     return MappingProxyType(dict(entries))
 
 

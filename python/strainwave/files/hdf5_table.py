@@ -198,4 +198,4 @@ def _class(node: Any) -> str:
 
 
 ABOUT = "series, matrices and lengths as in MAT files. They need h5py: `pip install 'strainwave[formats]'`."
-FORMAT = Format((".h5", ".hdf5"), open_hdf5, "HDF5", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format((".h5", ".hdf5"), open_hdf5, "HDF5", IN_THE_NAME, about=ABOUT)

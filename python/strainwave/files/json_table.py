@@ -154,4 +154,4 @@ def _types(values: list[Any]) -> set[type]:
 
 
 ABOUT = 'series by their names, `{"t": […], "q": [[…], …]}`, or a row for each sample, in one list or one a line.'
-FORMAT = Format((".json", ".jsonl"), open_json, "JSON", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format((".json", ".jsonl"), open_json, "JSON", IN_THE_NAME, about=ABOUT)

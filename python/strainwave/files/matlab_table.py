@@ -48,4 +48,4 @@ ABOUT = (
     "timeseries, Simulink data set): save their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: "
     "`pip install 'strainwave[formats]'`."
 )
-FORMAT = Format((".mat",), open_mat, "MAT", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format((".mat",), open_mat, "MAT", IN_THE_NAME, about=ABOUT)

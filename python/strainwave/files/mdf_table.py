@@ -110,4 +110,4 @@ ABOUT = (
     "version 2 to 4: the numeric channels; invalid values become nan. Linear, rational and table conversions are applied. A "
     "formula is never evaluated: its channel is left out and named."
 )
-FORMAT = Format((".mf4", ".mdf"), open_mdf, "MDF", "of the channel", about=ABOUT)
+FORMAT: Format = Format((".mf4", ".mdf"), open_mdf, "MDF", "of the channel", about=ABOUT)

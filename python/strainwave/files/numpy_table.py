@@ -78,4 +78,4 @@ def _whole(file: BinaryIO, count: int) -> bytes:
 
 
 ABOUT = "series, matrices and lengths as in MAT files. Arrays of Python objects are not loaded."
-FORMAT = Format((".npy", ".npz"), open_numpy, "NumPy", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format((".npy", ".npz"), open_numpy, "NumPy", IN_THE_NAME, about=ABOUT)

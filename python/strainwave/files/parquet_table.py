@@ -137,7 +137,7 @@ def _seconds(table: pyarrow.Table, field: pyarrow.Field) -> Array:
     return seconds_since_first(whole)
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     (".parquet",),
     open_parquet,
     "Parquet",

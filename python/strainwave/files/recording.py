@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments
-from strainwave.files.units import check as check_unit
-from strainwave.files.units import convert
+from strainwave import arguments, typeset
+from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.presentation import DIGITS, Pictured, Row
 
 if TYPE_CHECKING:
     import pandas
@@ -35,7 +35,7 @@ GENERATED_TITLE = "simulation"  # first word of the titles that simulations give
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Recording:
+class Recording(Pictured):
     """Named series of equal length, each with its unit.
 
     Args:
@@ -125,11 +125,16 @@ class Recording:
     def __reduce__(self) -> tuple[type[Recording], tuple[dict[str, Array], dict[str, str], str]]:
         return Recording, (dict(self.columns), dict(self.units), self.title)
 
-    def __repr__(self) -> str:
+    def _headline(self) -> str:
         span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
         series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
-        title = f' "{self.title}"' if self.title else ""
-        return f"<Recording{title}: {len(self)} samples{span}; {series}>"
+        title = f'"{self.title}": ' if self._heading else ""
+        return f"{title}{len(self)} samples{span}; {series}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name, values in self.columns.items():
+            mean = typeset.number(float(np.mean(values)), DIGITS)
+            yield Row(name, (float(values.min()), float(values.max())), self.unit(name), note=f"mean {mean}")
 
     def unit(self, name: str) -> str:
         """Return the unit of a column.
@@ -235,7 +240,7 @@ class Recording:
                 file.write(f"{TITLE}{self.title}\n".encode())
             write_csv(table, file)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_frame(self) -> pandas.DataFrame:
         """The columns as a table of pandas, units in its ``attrs["units"]``.
 
         Raises:
@@ -244,7 +249,7 @@ class Recording:
         try:
             import pandas
         except ImportError:
-            raise ImportError("to_pandas needs pandas, which is not installed; dict(recording) needs nothing") from None
+            raise ImportError("to_frame needs pandas, which is not installed; dict(recording) needs nothing") from None
         frame = pandas.DataFrame(dict(self.columns))
         frame.attrs["units"] = dict(self.units)
         return frame

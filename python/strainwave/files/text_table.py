@@ -426,7 +426,7 @@ def _not_a_number(text: str, marks: str) -> str:
     return f"{quoted(text)} is not a number"
 
 
-FORMAT = Format(
+FORMAT: Format = Format(
     (".csv", ".txt", ".tsv", ".log"),
     open_text,
     "Text",

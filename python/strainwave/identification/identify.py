@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
@@ -30,7 +30,7 @@ from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
 from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
-from strainwave.identification.readings import decided
+from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
 from strainwave.identification.results.drive import drive_set, name_of_files
@@ -40,21 +40,23 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.presentation import Pictured, Reported, Row, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 from strainwave.simulation.threads import one_thread_of_algebra
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Mapped = Callable[[Path], FileMapping] | FileMapping | None
+Mapped: TypeAlias = Callable[[Path], FileMapping] | FileMapping | None
 
 
 @dataclass(frozen=True, eq=False)
-class Identified(ComparedByFields):
+class Identified(ComparedByFields, Pictured, Reported):
     """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
-        start: the set it started from
+        start_set: the set it began with
         files: the result of each file, in the order given; then what several files determine only together
         parameters: every parameter determined: the mean of the files that agree about it
         gear_set: the set with the laws of the files that determine them best, and their numbers, the load and motor of the
@@ -73,7 +75,7 @@ class Identified(ComparedByFields):
     gear.friction_input.viscous 0.0003 ± 6e-07 N.m.s/rad
     """
 
-    start: GearSet
+    start_set: GearSet
     files: tuple[FileResult, ...]
     parameters: tuple[CombinedParameter, ...]
     gear_set: GearSet
@@ -83,6 +85,12 @@ class Identified(ComparedByFields):
     def failed(self) -> tuple[Check, ...]:
         """The checks that failed: settle them before the gear is used."""
         return tuple(check for check in self.checks if check.failed)
+
+    @property
+    def unchecked(self) -> dict[str, str]:
+        """Ratio or torque constant with which estimates of logs scale, if no log checks it: their values, by name."""
+        logs = [each.unchecked for each in self.files if each.recognised and each.recognised.kind == "log" and each.estimates]
+        return {name: value for name, value in logs[0].items() if all(name in each for each in logs)} if logs else {}
 
     @property
     def accepted(self) -> GearSet:
@@ -96,7 +104,7 @@ class Identified(ComparedByFields):
     @cached_property
     def states(self) -> tuple[ParameterState, ...]:
         """The state of every number of the gear."""
-        return tuple(states_of(self.start, self.gear_set, self.parameters, self.files))
+        return tuple(states_of(self.start_set, self.gear_set, self.parameters, self.files))
 
     def plot(self) -> Figure:
         """Return a figure of the identified numbers of the gear over those of the start set, each with its interval of 95 %.
@@ -109,29 +117,46 @@ class Identified(ComparedByFields):
         """
         from strainwave.identification.results.comparison_plot import over_start_figure
 
-        return over_start_figure(self.states, self.start, self.gear_set.name)
+        return over_start_figure(self.states, self.start_set, self.gear_set.name)
+
+    def _headline(self) -> str:
+        checks = counted(len(self.checks), "check")
+        verdict = f"{len(self.failed)} of {checks} FAILED" if self.failed else f"{checks} passed"
+        refused = sum(bool(each.refused) for each in self.files)
+        files = counted(len(self.files), "file") + (f", {refused} refused" if refused else "")
+        return f"{self.gear_set.name}, {counted(len(self.parameters), 'parameter')} from {files}, {verdict}"
+
+    def _rows(self) -> Iterator[Row]:
+        for each in self.parameters:
+            taken = each.estimate
+            yield Row(taken.label, taken.value, taken.unit, taken.sigma, each.taken_from)
+        for file in self.files:
+            yield Row(file.name, file._headline())
+
+    def _remarks(self) -> Iterator[str]:
+        return (f"FAILED: {check.source}: {check.message}; {check.remedy}" for check in self.failed)
 
 
 def identify(
-    start: GearSet | str | Path,
+    start_set: GearSet | str | Path,
     files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
     mapping: Mapped = None,
     accept: bool = False,
     name: str | None = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Identified:
     """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
 
     Args:
-        start: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
+        start_set: the set to start from: a set, the name of one in the catalogue, or the path of a gear file
         files: tables of friction, torsion loops, logs of the drive, records of two encoders, records at constant speed,
             friction at rest, in any format and order; of a folder all files that may be such. Or a mapping from the kind of
             each, as "friction" or "torsion", to a path or a recording
         mapping: what a person states of all files, or a function that returns it for the path of each
         accept: whether files are used although a check of them fails
         name: of the gear, one line of text; by default that of its files, as `gear of joint_5`
-        progress: called with the name of each file as its turn comes
+        progress: as of `sw.simulate`
 
     Returns:
         result of each file, and the gear; look at its `failed` checks before it is used
@@ -152,12 +177,15 @@ def identify(
     if name is not None:
         check_line("name", name)
     opened = measurement_files(files)
-    read, start = read_measurements(opened, mapping, start if isinstance(start, GearSet) else GearSet.read(start))
+    read, start_set = read_measurements(
+        opened, mapping, start_set if isinstance(start_set, GearSet) else GearSet.read(start_set)
+    )
     check_one_joint(_only_read(read))
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    fits = _Fits.of(start, recognised, mapping, accept, progress)
+    with in_turn(progress, len(recognised)) as turn:
+        fits = _Fits.of(start_set, recognised, mapping, accept, turn)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     results = without_motor(results, accept=accept)
@@ -170,10 +198,10 @@ def identify(
     if not any(each.estimates or each.failed for each in results):
         raise_question(results)
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
-    checks = _checks(start, results, parameters)
+    checks = _checks(start_set, results, parameters)
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
-    gear_set = drive_set(start, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
-    return Identified(start, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
+    gear_set = drive_set(start_set, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
+    return Identified(start_set, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
 
 
 def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:
@@ -254,9 +282,9 @@ class _Fits:
     """The fits of all files, one after the other in the order of their kinds."""
 
     def __init__(
-        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, progress: Callable[[str], None]
+        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, turn: Callable[[str], None]
     ) -> None:
-        self.known, self.copies, self.mapping, self.accept, self.progress = known, copies, mapping, accept, progress
+        self.known, self.copies, self.mapping, self.accept, self.turn = known, copies, mapping, accept, turn
         self.results = dict[Path, FileResult]()
         self.together = list[FileResult]()
 
@@ -267,11 +295,11 @@ class _Fits:
         files: Sequence[Recognised],
         mapping: Mapped = None,
         accept: bool = False,
-        progress: Callable[[str], None] = lambda stage: None,
+        turn: Callable[[str], None] = lambda name: None,
     ) -> _Fits:
         """Return the fits of files from a start set."""
         before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
-        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, progress)
+        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, turn)
         fits.fit_all(files)
         return fits
 
@@ -284,7 +312,7 @@ class _Fits:
         for kind in kinds:
             mine = [file for file in files if turns[file.path][0] == kind.name]
             for file in sorted(mine, key=lambda file: turns[file.path][1]):
-                self.progress(file.path.name)
+                self.turn(file.path.name)
                 self.fit(own[file.path], file)
             self.fit_together(kind.fit_together, self._originals(kind, own, files))
         for kind in kinds:
@@ -347,6 +375,7 @@ def read_measurements(
 ) -> tuple[dict[Path, Recognised | FileResult], GearSet]:
     """Return each file as it is read, or why it is refused, by its path; and the set with the ratio given with all files."""
     read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
+    asked = {path: each.question for path, each in read.items() if isinstance(each, FileResult) and each.question is not None}
     sources = {file.path: file for file in opened.files}
     in_one_reading = consistent(_only_read(read), sources)
     start = with_ratio_of_all(start, in_one_reading)
@@ -354,6 +383,9 @@ def read_measurements(
         source = sources[each.path]
         given = _mapping_of(mapping, each.path, source.kind) or FileMapping()
         read[each.path] = _decided(each, source, GearSoFar(start, start), given)
+    for path, question in asked.items():
+        given = _mapping_of(mapping, path, sources[path].kind) or FileMapping()
+        read[path] = _answered(question, sources[path], GearSoFar(start, start), given)
     for link in opened.links:
         read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
     return read, start
@@ -385,6 +417,16 @@ def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given:
     except ValueError as error:
         return not_used(file.path, error, file)
     return file if file.question is None else not_used(file.path, file.question, file)
+
+
+def _answered(
+    question: QuestionError, source: MeasurementFile, known: GearSoFar, given: FileMapping
+) -> Recognised | FileResult:
+    """Return a file in the one answer to its question that the numbers leave, or the question with those that are possible."""
+    try:
+        return answered(question, source, known, given)
+    except (ValueError, FloatingPointError) as error:
+        return not_used(source.path, error if isinstance(error, QuestionError) else question)
 
 
 def not_used(path: Path, error: Exception, file: Recognised | None = None) -> FileResult:

@@ -1,30 +1,33 @@
-"""The reading of a log, if names and numbers of its file leave several open: the one that leaves least unexplained.
+"""The reading of a file, if its names and numbers leave several open: the most probable one, or the question which it is.
 
-Each reading is fitted by plain least squares to a part of the motion, and predicts the rest. A wrong unit or side scales
-inertia and friction, which absorb it, but not the angle in the sine of gravity. Samples of sliding are compared, as plain least
-squares does not describe how friction begins. If several readings remain, nothing in the file separates them: `decided` asks.
+Readings of a motion are fitted by plain least squares to a part of the motion, and predict the rest. A wrong unit or side
+scales inertia and friction, which absorb it, but not the angle in the sine of gravity. Samples of sliding are compared, as
+plain least squares does not describe how friction begins. Readings that explain as much are compared by friction and speed
+with gears of the size of the start set, by Bayes' rule (`evidence`). Which joint or which column is meant is asked.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.identification.candidates.plain import fit_plain, sliding_squares
 from strainwave.identification.checks.sizes import input_speed
-from strainwave.identification.effort_readings import with_effort
+from strainwave.identification.evidence import MIN_ODDS, Effort, Record, Usual, efforts_of, record_of
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, recognise
 from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED
-from strainwave.messages import listed
-from strainwave.questions import Answer, QuestionError
+from strainwave.identification.results.ratio import with_ratio
+from strainwave.messages import listed, one_line
+from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
@@ -39,26 +42,31 @@ TORQUES = ("joint_torque", "input_torque")
 
 @dataclass(frozen=True, eq=False)
 class _Reading:
-    """One way to read a log, and what it leaves unexplained.
+    """One way to read a file, and what it leaves unexplained.
 
     Attributes:
-        file: read so
-        answer: by which it is read so
+        answer: by which it is read so; without a label if it is the only one
+        file: read so; None if it is not compared with others
         squares: sum of squares of what plain least squares leaves, over the variance of the effort, of each block of the motion
-        samples: of sliding, of each block
+        samples: of sliding, of each block; none of a table
         contradiction: why no gear moves so; empty if one may
     """
 
-    file: Recognised
     answer: Answer
-    squares: Array
-    samples: Array
-    contradiction: str
+    file: Recognised | None = None
+    squares: Array = field(default_factory=lambda: np.zeros(0))
+    samples: Array = field(default_factory=lambda: np.zeros(0))
+    contradiction: str = ""
 
     @property
     def error(self) -> float:
         """Root mean square over what varies, on data held out [1]."""
         return float(np.sqrt(self.squares.sum() / max(self.samples.sum(), 1.0)))
+
+    @property
+    def of_columns(self) -> object:
+        """The joint and the columns that its answer names."""
+        return self.answer.given.get("joint"), frozenset(self.answer.given.get("columns", {}).values())
 
     def is_better_than(self, other: _Reading, share: float) -> bool:
         """True if it leaves at most this share of what another one leaves, and less over the whole motion, beyond chance."""
@@ -66,21 +74,172 @@ class _Reading:
         return sigmas_of_gain(gains) > MIN_READING_GAIN_SIGMA and self.error < share * other.error
 
 
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """One way to read motion and effort of a file.
+
+    Attributes:
+        reading: of the motion
+        effort: its reading; None if it is not judged
+        record: friction and speed; None if it is not judged
+        evidence: logarithm of the probability, but for a constant; infinite if it is not judged
+        is_usual: True if the effort is read so without being asked about
+        is_open: True if the effort may be read in another way
+    """
+
+    reading: _Reading
+    effort: Effort | None = None
+    record: Record | None = None
+    evidence: float = np.inf
+    is_usual: bool = True
+    is_open: bool = False
+
+    @property
+    def shown(self) -> str:
+        """Friction and speed in it, in words."""
+        return self.effort.shown(self.record) if self.effort is not None and self.record is not None else ""
+
+    @property
+    def answer(self) -> Answer:
+        """The answer with which the file is read so, and what it gives."""
+        motion = self.reading.answer
+        of_motion, of_effort = motion.gives, Answer("")
+        if self.is_open and self.effort is not None:
+            as_usual = Answer("" if motion.label else self.effort.described, self.effort.given)
+            of_effort = as_usual if self.is_usual else self.effort.answer
+        if len(self.reading.samples):
+            of_motion = f"{_percent(self.reading)} unexplained"
+        gives = (of_motion, f"{self.shown} {of_effort.gives}".strip())
+        return replace(of_effort.after(motion), gives="; ".join(filter(None, gives)))
+
+
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:
-    """Return a log in the reading of motion and effort that leaves least open; with its question, if several remain.
+    """Return a file in the most probable reading of its motion and effort.
 
     Args:
         file: as it is usually read
         source: to read it again
         known: the gear before the file is fitted
         given: what a person states of it
+
+    Raises:
+        QuestionError: several readings are nearly as probable
     """
-    read = _with_motion(file, source, known)
-    return read if read.question else with_effort(read, source, known, given)
+    if file.kind != "log" or not file.alternatives:
+        return _most_probable([_Reading(Answer(""), file)], "", source, known, given)
+    readings, question = _of_motion(file, source, known)
+    return _most_probable(readings, question, source, known, given)
 
 
-def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) -> Recognised:
-    """Return a log in the reading that leaves least unexplained; with its question, if several leave as little.
+def answered(question: QuestionError, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:
+    """Return a file whose names and numbers leave a question open in the most probable one of its answers.
+
+    Args:
+        question: each of its answers leads to a measurement
+        source, known, given: as of `decided`
+
+    Raises:
+        QuestionError: several answers are possible; those to questions that would follow are among them
+    """
+    readings = list[_Reading]()
+    for answer in question.answers:
+        if answer.numbers or answer.files or answer.given.get("joint") == ALL_JOINTS:
+            readings.append(_Reading(answer))
+            continue
+        file = recognise(source, given.updated(FileMapping(**answer.given)))
+        known = with_ratio(known, file)
+        of_motion = _of_motion(file, source, known)[0] if file.kind == "log" and file.alternatives else []
+        readings += [replace(each, answer=each.answer.after(answer)) for each in of_motion]
+        if not of_motion:
+            readings.append((_tried(file, answer, known) if file.kind == "log" else None) or _Reading(answer, file))
+        if readings[-1].error >= MAX_UNEXPLAINED:
+            readings[-1] = replace(readings[-1], contradiction=f"{_percent(readings[-1])} is unexplained")
+    return _most_probable(readings, question.question, source, known, given)
+
+
+# ---- The most probable one -------------------------------------------------------------------------------------------
+
+
+def _most_probable(
+    readings: Sequence[_Reading], question: str, source: MeasurementFile, known: GearSoFar, given: FileMapping
+) -> Recognised:
+    """Return the file in the most probable way to read its motion and effort.
+
+    Args:
+        readings: of the motion, the usual one first
+        question: that is open between them; empty if there is one
+        source, known, given: as of `decided`
+
+    Raises:
+        QuestionError: several are nearly as probable, or they are not compared
+    """
+    usual = Usual.of(known)
+    by_reading = [_ways(each, known, given, usual, is_one=not question) for each in _sensible(readings)]
+    every = [way for same_place in zip_longest(*by_reading) for way in same_place if way is not None]
+    near = [way for way in every if way.evidence > _best(way, every) - np.log(MIN_ODDS)]
+    first, is_of_same_columns = near[0], len({each.of_columns for each in readings}) == 1
+    if len(near) == 1 and (not question or (first.effort is not None and is_of_same_columns and len(readings) > 1)):
+        return _read_so(first, every, source, usual)
+    if not question:
+        assert first.effort is not None
+        assert first.record is not None
+        what = listed(dict.fromkeys(way.effort.described for way in near if way.effort is not None))
+        question = f"{first.effort.column} may be {what}, and neither its name nor a fit decides; {usual.shown(first.record)}"
+    asked = near + [ways[0] for ways in by_reading if not set(ways) & set(near)]
+    ranked = sorted(asked, key=lambda way: -way.evidence) if is_of_same_columns else asked
+    raise QuestionError(one_line(question), [way.answer for way in ranked[:MAX_ANSWERS]])
+
+
+def _sensible(readings: Sequence[_Reading]) -> list[_Reading]:
+    """Return the readings in which a gear may move; of a joint of which none is so, all."""
+    moving = {each.answer.given.get("joint") for each in readings if not each.contradiction}
+    return [each for each in readings if not each.contradiction or each.answer.given.get("joint") not in moving]
+
+
+def _best(way: _Way, ways: Sequence[_Way]) -> float:
+    """Return the largest evidence of the ways that are compared with one: those of the same columns."""
+    same = [each.evidence for each in ways if each.reading.of_columns == way.reading.of_columns and each.effort is not None]
+    return max(same, default=-np.inf)
+
+
+def _ways(reading: _Reading, known: GearSoFar, given: FileMapping, usual: Usual, *, is_one: bool) -> list[_Way]:
+    """Return the ways to read the effort beside a motion, the most probable first; one that is not judged, if none is."""
+    file = reading.file
+    stated = {name: value for name, value in reading.answer.given.items() if name != "side"}  # of the motion
+    efforts = [] if file is None else efforts_of(file, known, given.updated(FileMapping(**stated)))
+    record = None if file is None or len(efforts) < 1 + is_one else record_of(file, known, efforts[0])
+    if record is None:
+        return [_Way(reading)]
+    is_open, first = len(efforts) > 1, efforts[0]
+    ways = [_Way(reading, each, record, each.evidence(record, usual), each is first, is_open) for each in efforts]
+    return sorted(ways, key=lambda way: -way.evidence)
+
+
+def _read_so(way: _Way, ways: Sequence[_Way], source: MeasurementFile, usual: Usual) -> Recognised:
+    """Return the file in the most probable way, with a remark of the others if it is not the usual one."""
+    file, effort, record = way.reading.file, way.effort, way.record
+    assert file is not None
+    if effort is None or record is None or (way.is_usual and not way.reading.answer.label):
+        return file
+    read = file if way.is_usual else recognise(source, file.mapping.updated(FileMapping(**effort.given)))
+    tried = "; ".join(f"{_name_of(each)}: {each.shown}" for each in ways if each.effort is not None)
+    taken = f"{effort.column} is read as {_name_of(way)}, as its friction is nearest to that of the start set"
+    remark = one_line(f"{taken}: {tried}; {usual.shown(record)}")
+    why = tuple(each for each in read.why if not ("side" in way.reading.answer.given and GIVEN in each))
+    return replace(read, question=None, alternatives=(), why=why, remarks=(remark, *read.remarks))
+
+
+def _name_of(way: _Way) -> str:
+    """Return a way to read a file in words."""
+    effort = way.effort.described if way.effort is not None and (way.is_open or not way.reading.answer.label) else ""
+    return ", ".join(filter(None, (way.reading.answer.label, effort)))
+
+
+# ---- The motion ------------------------------------------------------------------------------------------------------
+
+
+def _of_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) -> tuple[list[_Reading], str]:
+    """Return the readings of the motion of a log that remain, and the question that is open if there are several.
 
     The usual reading of a log without a question is kept if it leaves clearly less than others, or if none explains the log.
     If another one leaves far less, that one is taken. Between them it is asked about, but for joints of robots, whose usual
@@ -91,35 +250,44 @@ def _with_motion(file: Recognised, source: MeasurementFile, known: GearSoFar) ->
         source: to read it again
         known: the gear before the file is fitted
     """
-    if file.kind != "log" or not file.alternatives:
-        return file
     tried = [_tried(file, _answer_of(file), known), *(_tried_again(file, source, each, known) for each in file.alternatives)]
     readings = [each for each in tried if each is not None]
-    sensible = [each for each in readings if not each.contradiction] or readings
+    sensible = _sensible(readings)
+    as_usual = [_Reading(Answer(""), file)]
     if not sensible:
-        return file
+        return as_usual, ""
     best = min(sensible, key=lambda each: each.error)
     remaining = [each for each in sensible if each is best or not best.is_better_than(each, MAX_OF_ANOTHER)]
     usual = next((each for each in readings if each.file is file), None)
     others = [each for each in readings if each is not best]
     if file.question:
-        is_decided = best.error < MAX_UNEXPLAINED and len(remaining) == 1
-        return _taken(best, others, file) if is_decided else replace(file, question=_asked(file.question.question, remaining))
+        if best.error >= MAX_UNEXPLAINED:
+            named, question = _open(file.question.question, remaining)
+            return [replace(each, file=None) for each in named], question
+        return ([_taken(best, others, file)], "") if len(remaining) == 1 else _open(file.question.question, remaining)
     is_open = usual in remaining and len(remaining) > 1
     if best.error >= MAX_UNEXPLAINED or (is_open and file.is_of_robot):
-        return file
+        return as_usual, ""
     if is_open:
-        return replace(file, question=_asked(UNITS_EQUAL, remaining))
+        return _open(UNITS_EQUAL, remaining)
     rivals = [usual] if usual is not None and usual is not best and not usual.contradiction else []
     if len(remaining) == 1 and all(best.is_better_than(each, MAX_OF_USUAL) for each in rivals):
-        return _taken(best, others, file)
-    return replace(file, question=_asked(UNITS_OPEN, [*rivals, *remaining]))
+        return [_taken(best, others, file)], ""
+    return _open(UNITS_OPEN, [*rivals, *remaining])
 
 
-def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> Recognised:
-    """Return the file in the best reading, with a remark of what each leaves."""
+def _open(question: str, remaining: Sequence[_Reading]) -> tuple[list[_Reading], str]:
+    """Return readings between which no fit decides, called by their sides and units, and the question."""
+    named = [replace(each, answer=replace(each.answer, label=_described(each))) for each in remaining]
+    return named, f"{question}; the fit does not decide"
+
+
+def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> _Reading:
+    """Return the best reading as the only one, with a remark of what each leaves."""
+    assert best.file is not None
     why = tuple(each for each in best.file.why if not (file.question and GIVEN in each))
-    return replace(best.file, question=None, alternatives=(), why=why, remarks=(_report(best, others), *best.file.remarks))
+    remarks = (_report(best, others), *best.file.remarks)
+    return _Reading(Answer(""), replace(best.file, question=None, alternatives=(), why=why, remarks=remarks))
 
 
 def _tried_again(file: Recognised, source: MeasurementFile, other: Answer, known: GearSoFar) -> _Reading | None:
@@ -138,7 +306,7 @@ def _tried(file: Recognised, answer: Answer, known: GearSoFar) -> _Reading | Non
         squares, samples = sliding_squares(log.log, log.drive)
     except (ValueError, FloatingPointError):
         return None
-    return _Reading(file, answer, squares, samples, _doubt(log))
+    return _Reading(answer, file, squares, samples, _doubt(log))
 
 
 def _doubt(log: PreparedLog) -> str:
@@ -153,15 +321,10 @@ def _doubt(log: PreparedLog) -> str:
 
 def _report(best: _Reading, others: Sequence[_Reading]) -> str:
     """Return which reading is taken, and what each leaves."""
+    assert best.file is not None
     effort = next(name for name in ("current", *TORQUES, "voltage") if name in best.file.columns)
     least = f"read as {_described(best)}, which leaves {_percent(best)} of {best.file.columns[effort]} unexplained"
     return "; ".join([f"{least} on data held out", *(f"{_described(each)}: {_left(each)}" for each in others)])
-
-
-def _asked(question: str, remaining: Sequence[_Reading]) -> QuestionError:
-    """Return a question with the readings that remain as its answers, and what each leaves."""
-    ways = [replace(each.answer, label=_described(each), gives=f"{_percent(each)} unexplained") for each in remaining]
-    return QuestionError(f"{question}; the fit does not decide", ways)
 
 
 def _answer_of(file: Recognised) -> Answer:
@@ -174,7 +337,9 @@ def _answer_of(file: Recognised) -> Answer:
 
 def _described(reading: _Reading) -> str:
     """Return side and units of the motions; their channels and that of the torque, if they are not of one side."""
-    file, torques = reading.file, [name for name in TORQUES if name in reading.file.units]
+    file = reading.file
+    assert file is not None
+    torques = [name for name in TORQUES if name in file.units]
     motions = [name for name in file.units if name.endswith(("_angle", "_speed"))]
     if file.side is not None:
         return f"{listed(file.units[name] for name in motions)} at the {file.side}"

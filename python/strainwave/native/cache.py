@@ -30,7 +30,7 @@ class KernelWarning(UserWarning):
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> with warnings.catch_warnings():
-    ...     warnings.simplefilter("ignore", sw.KernelWarning)  # on a machine without a compiler
+    ...     warnings.simplefilter("ignore", sw.native.KernelWarning)  # on a machine without a compiler
     ...     run = sw.simulate(drive, sw.scenario.step(5.0, duration=0.1))
     """
 

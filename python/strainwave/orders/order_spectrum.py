@@ -8,18 +8,23 @@ an order stays where it is while the speed changes, which a frequency does not.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, isclose, pi, tau
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import quoted
+from strainwave.presentation import Pictured, Row, counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -28,7 +33,7 @@ MAX_VALUE = 1e150  # of a value, so that its square is a number, too
 
 
 @dataclass(frozen=True, eq=False)
-class Orders(ComparedByFields):
+class Orders(ComparedByFields, Pictured):
     """Orders of a shaft in a recorded column.
 
     Args:
@@ -44,7 +49,7 @@ class Orders(ComparedByFields):
     >>> import strainwave as sw
     >>> theta = np.linspace(0.0, 20.0 * np.pi, 2000)
     >>> columns = {"input_angle": theta, "torque": 0.5 + 0.03 * np.sin(2 * theta) + 0.01 * np.sin(4 * theta)}
-    >>> found = sw.order_amplitudes(sw.Recording(columns, {"input_angle": "rad", "torque": "N.m"}), "torque", [2, 4])
+    >>> found = sw.orders.order_amplitudes(sw.Recording(columns, {"input_angle": "rad", "torque": "N.m"}), "torque", [2, 4])
     >>> found.amplitude.round(6), round(found.mean, 6), found.unit, found.revolutions
     (array([0.03, 0.01]), 0.5, 'N.m', 10)
     """
@@ -57,6 +62,24 @@ class Orders(ComparedByFields):
     revolutions: int
     unit: str
 
+    def _headline(self) -> str:
+        left = typeset.quantity(self.residual, self.unit)
+        return f"{counted(len(self.order), 'order')} over {counted(self.revolutions, 'revolution')}, {left} rms left"
+
+    def _rows(self) -> Iterator[Row]:
+        for order, amplitude, phase in zip(self.order.tolist(), self.amplitude.tolist(), self.phase.tolist(), strict=True):
+            yield Row(f"order {order:g}", amplitude, self.unit, note=f"phase {typeset.number(float(np.degrees(phase)), 4)}°")
+        yield Row("mean", self.mean, self.unit)
+        yield Row("left", self.residual, self.unit, note="rms")
+
+    def plot(self) -> Figure:
+        """Return a figure of the amplitude over the order."""
+        from strainwave.drawing.simple import Series, stems_figure
+
+        return stems_figure(
+            "Orders of a revolution", Series("order", "1", self.order), Series("amplitude", self.unit, self.amplitude)
+        )
+
 
 class BearingOrders(NamedTuple):
     """Events in a bearing in each revolution of its inner ring.
@@ -68,7 +91,7 @@ class BearingOrders(NamedTuple):
         ball: a ball turns about itself [1]; a fault of it meets a ring twice as often
 
     >>> import strainwave as sw
-    >>> orders = sw.bearing_orders(balls=9, ball_diameter=7.94, pitch_diameter=39.04)
+    >>> orders = sw.orders.bearing_orders(balls=9, ball_diameter=7.94, pitch_diameter=39.04)
     >>> round(30.0 * orders.outer_ring, 1)  # Hz of a fault of the outer ring, at 30 revolutions per second
     107.5
     """
@@ -105,7 +128,7 @@ def order_amplitudes(recording: Recording, column: str, order: ArrayLike, *, ang
     >>> theta = np.linspace(0.0, 100 * np.pi, 5000)
     >>> ripple = 0.5 + 0.03 * np.sin(2 * theta + 0.4) + 0.01 * np.sin(2.02 * theta)
     >>> recording = sw.Recording({"input_angle": theta, "torque": ripple}, {"input_angle": "rad", "torque": "N.m"})
-    >>> found = sw.order_amplitudes(recording, "torque", [2, 2.02])
+    >>> found = sw.orders.order_amplitudes(recording, "torque", [2, 2.02])
     >>> found.amplitude.round(9), found.phase.round(9)[0], found.revolutions
     (array([0.03, 0.01]), np.float64(0.4), 50)
     """
@@ -167,7 +190,7 @@ def order_spectrum(recording: Recording, column: str, highest: float, *, angle: 
     >>> theta = np.linspace(0.0, 40 * np.pi, 4001)
     >>> units = {"input_angle": "rad", "torque": "N.m"}
     >>> turning = sw.Recording({"input_angle": theta, "torque": 0.03 * np.sin(2 * theta)}, units)
-    >>> spectrum = sw.order_spectrum(turning, "torque", highest=5.0)
+    >>> spectrum = sw.orders.order_spectrum(turning, "torque", highest=5.0)
     >>> largest = int(np.argmax(spectrum["amplitude"]))
     >>> float(spectrum["order"][largest]), float(spectrum["amplitude"][largest].round(6))
     (2.0, 0.03)
@@ -227,7 +250,7 @@ def bearing_orders(
             circle, or the angle lies outside of [0, pi/2)
 
     >>> import strainwave as sw
-    >>> bearing = sw.bearing_orders(balls=9, ball_diameter=7.94, pitch_diameter=39.04)
+    >>> bearing = sw.orders.bearing_orders(balls=9, ball_diameter=7.94, pitch_diameter=39.04)
     >>> round(bearing.outer_ring, 4), round(bearing.inner_ring, 4)
     (3.5848, 5.4152)
     """

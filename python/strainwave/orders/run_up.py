@@ -2,11 +2,12 @@ r"""Vibration in a run-up: orders of the shaft, the resonance that they pass, an
 
 An order is a wave of the shaft's angle, which excites the structure at the frequency f of the moment,
 
-.. math:: y = \mathrm{Re} \sum_n \bigl(a_n + b_n H(f_n)\bigr) e^{j n \theta}, \qquad H(f) = \frac{1}{1 - r^2 + 2 j \zeta r},
-          \quad r = f / f_0
+.. math:: y = \mathrm{Re} \sum_n \bigl(a_n + (b_n + j r c_n) H(f_n)\bigr) e^{j n \theta}, \qquad
+          H(f) = \frac{1}{1 - r^2 + 2 j \zeta r}, \quad r = f / f_0
 
-(receptance of one degree of freedom). :math:`a_n` is what passes by the resonance; with :math:`r^2 H`, the answer of an
-accelerometer to a force, it is :math:`-b_n`. Amplitudes are linear; f0 and ζ of all orders together are searched.
+(receptance of one degree of freedom). Receptance, mobility, transmissibility and the answer of an accelerometer to a force,
+:math:`r^2 H = -1 + (1 + 2 j \zeta r) H`, are covered. :math:`a_n` is what passes by the resonance. Amplitudes are linear; f0
+and ζ of all orders together are searched.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.orders.lines import SpectrumLine
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 from strainwave.typeset import number
@@ -28,7 +30,7 @@ Complex = NDArray[np.complex128]
 
 MIN_SPEED_RATIO = 1.5  # of the fastest to the slowest speed, from which orders pass a range of frequencies
 MAX_FROM_WHOLE = 0.01  # by which a line that passes a resonance lies beside its whole order: its phase turns there
-MAX_ORDERS = 12  # of a shaft, each with four amplitudes
+MAX_ORDERS = 12  # of a shaft, each with six amplitudes
 SAMPLES_OF_SEARCH = 2**15  # that first values are searched in, at most
 SMOOTH_PERIODS = 8.0  # of an order, over which its amplitude is averaged for the first value of the resonance
 START_DAMPING = 0.03  # of critical damping (assumed): of bolted structures of metal
@@ -57,7 +59,7 @@ class OrderPassing:
 
 
 @dataclass(frozen=True)
-class RunUp:
+class RunUp(Presented):
     """Vibration of a shaft whose speed varies.
 
     Attributes:
@@ -186,7 +188,8 @@ class _Problem:
 
             return of
 
-        bounds = ([0.5 * start[0], DAMPING_BOUNDS[0]], [2.0 * start[0], DAMPING_BOUNDS[1]])
+        low, high = min(self.orders) * self.speed.min() / tau, max(self.orders) * self.speed.max() / tau
+        bounds = ([low, DAMPING_BOUNDS[0]], [high, DAMPING_BOUNDS[1]])
         scale = [START_DAMPING * start[0], START_DAMPING]
         found = least_squares(left(slice(None, None, step)), start, x_scale=scale, bounds=bounds)
         found = least_squares(left(slice(None)), found.x, x_scale=scale, bounds=bounds)
@@ -214,7 +217,7 @@ class _Problem:
             return f"no order passes {number(float(frequency), 3)} Hz from well below to well above; run up further"
         if damping > 0.9 * DAMPING_BOUNDS[1] or not damping > MIN_SIGNIFICANCE * fit.sigmas[1]:
             return "what the orders have is no peak of one degree of freedom"
-        gain = max(abs(part) for _, part in self._parts(fit))
+        gain = max(abs(part[1] + 1j * part[2]) for part in self._parts(fit))
         if gain < MIN_SIGNIFICANCE * fit.sigma_of_amplitudes:
             return "no order is larger there than elsewhere"
         return ""
@@ -222,10 +225,8 @@ class _Problem:
     def passings(self, fit: _Fit) -> Iterator[OrderPassing]:
         """Yield the orders that stand out, the strongest first."""
         found = []
-        for order, (direct, amplified) in zip(self.orders, self._parts(fit), strict=True):
-            frequency = order * self.speed / tau
-            answer = _answer(frequency, fit.values) if len(fit.values) else np.zeros(len(frequency))
-            size = np.abs(direct + amplified * answer)
+        for order, part in zip(self.orders, self._parts(fit), strict=True):
+            size = np.abs(part @ _answers(order * self.speed / tau, fit.values))
             at, ends = int(np.argmax(size)), size[[int(np.argmin(self.speed)), int(np.argmax(self.speed))]].max()
             found.append(OrderPassing(order, float(ends), float(size[at]), float(self.speed[at]), fit.sigma_of_amplitudes))
         yield from sorted(
@@ -239,33 +240,33 @@ class _Problem:
             if (size := float(np.hypot(*pair))) > MIN_SIGNIFICANCE * fit.sigma_of_amplitudes:
                 yield frequency, size, fit.sigma_of_amplitudes
 
-    def _parts(self, fit: _Fit) -> list[tuple[complex, complex]]:
-        """Return of each order what passes by the resonance, and what it amplifies."""
-        width = 4 if len(fit.values) else 2
-        rows = fit.amplitudes[: width * len(self.orders)].reshape(-1, width)
-        return [(complex(*row[:2]), complex(*row[2:]) if width == 4 else 0j) for row in rows]
+    def _parts(self, fit: _Fit) -> Complex:
+        """Return the amplitudes of each order: of what passes by the resonance and, with one, of the two that it amplifies."""
+        width = 2 * (3 if len(fit.values) else 1)
+        return fit.amplitudes[: width * len(self.orders)].reshape(len(self.orders), width).view(complex)
 
     def _columns(self, values: Array, steady: bool) -> Array:
         waves: list[Complex] = []
         for order in self.orders:
             wave = np.exp(1j * order * self.angle)
-            waves.append(wave)
-            if len(values):
-                waves.append(wave * _answer(order * self.speed / tau, values) if steady else self._decaying(wave, values))
+            waves += list(wave * _answers(order * self.speed / tau, values) if steady else self._decaying(wave, values))
         waves += [np.exp(1j * tau * frequency * self.time) for frequency in self.fixed]
         columns = [part for wave in waves for part in (wave.real, -wave.imag)]
         return np.stack(columns, axis=1) if columns else np.zeros((len(self.time), 0))
 
     def _decaying(self, wave: Complex, values: Array) -> Complex:
-        """Return the answer to a wave that begins at the first sample."""
+        """Return the answers to a wave that begins at the first sample."""
         from scipy.fft import fft, fftfreq, ifft, next_fast_len
 
         length = next_fast_len(2 * len(wave))
         frequency = fftfreq(length, self.time[1] - self.time[0])
-        return np.asarray(ifft(fft(wave, length) * _answer(frequency, values))[: len(wave)])
+        return np.asarray(ifft(fft(wave, length) * _answers(frequency, values))[:, : len(wave)])
 
 
-def _answer(frequency: Array, values: Array) -> Complex:
-    """Return the receptance of one degree of freedom over its static one."""
+def _answers(frequency: Array, values: Array) -> Complex:
+    """Return 1 and, with a resonance, its receptance and mobility over the static receptance, shape (1 or 3, n)."""
+    if not len(values):
+        return np.ones((1, len(frequency)), complex)
     ratio = frequency / values[0]
-    return np.asarray(1.0 / (1.0 - ratio**2 + 2j * values[1] * ratio))
+    receptance = 1.0 / (1.0 - ratio**2 + 2j * values[1] * ratio)
+    return np.stack([np.ones(len(frequency)), receptance, 1j * ratio * receptance])

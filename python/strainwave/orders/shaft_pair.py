@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.messages import as_option
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
@@ -27,7 +29,7 @@ MIN_GRAVITY_SWING = 0.1  # rad of the output, above which gravity is separated f
 
 
 @dataclass(frozen=True)
-class Ratio:
+class Ratio(Presented):
     """Signed ratio of two shafts, input over output.
 
     Attributes:
@@ -98,7 +100,8 @@ def ratio_of(pair: Pair, given: float | None) -> tuple[Pair, Ratio]:
         )
     if abs(slope) > MAX_SLOPE:
         raise ValueError(
-            f"output_angle turns {abs(slope):.4g} times as far as input_angle: the two seem to be swapped; exchange their names"
+            f"output_angle turns {abs(slope):.4g} times as far as input_angle: the two seem to be swapped; name them the other "
+            f"way, with {as_option('column', 'input_angle', 'NAME')} and {as_option('column', 'output_angle', 'NAME')}"
         )
     value, sigma = _slow_ratio(pair, 1.0 / slope)
     in_joint_units = _agree(1.0, value, sigma)

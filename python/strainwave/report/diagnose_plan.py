@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
 
-from strainwave.diagnose.detection_limit import DetectionLimit
+from strainwave.diagnose.smallest_error import DetectionLimit
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance

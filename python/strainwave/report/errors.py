@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from math import isfinite
 
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.typeset import number, quantity
+from strainwave.typeset import percent, quantity
 
 THIS_MODEL, LEAST_SQUARES, ZERO_MODEL = "this model", "plain least squares", "predicting the mean"
 Row = tuple[str, str, str]  # name of the model, its error, and its error over that of predicting the mean
@@ -36,17 +36,3 @@ def held_out_rows(held_out: HeldOut | None) -> list[Row]:
     if isfinite(held_out.in_band):
         rows.insert(1, (f"{THIS_MODEL}, in the pass band of its fit", "", percent(held_out.in_band)))
     return rows
-
-
-def share_held_out(held_out: HeldOut | None) -> str:
-    """Return the error on data held out as a share of what varies, `4.8 %`; empty if there is none."""
-    return percent(held_out.relative) if held_out is not None and isfinite(held_out.relative) else ""
-
-
-def percent(share: float) -> str:
-    """Return a share in print, to two digits.
-
-    >>> percent(0.0484)
-    '4.8 %'
-    """
-    return f"{number(100.0 * share, 2)} %"

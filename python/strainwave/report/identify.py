@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,23 +26,28 @@ from strainwave.identification.results.file_result import FileEstimate, FileResu
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
 from strainwave.report import identify_figures as plots
-from strainwave.report.errors import held_out_rows, percent
+from strainwave.report.errors import held_out_rows
+from strainwave.report.first_screen import next_commands, not_determined, numbers_by_source, pictures
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
-from strainwave.typeset import fixed, interval, number, plain_symbols, quantity, uncertain, uncertain_quantity, unit
+from strainwave.typeset import fixed, interval, number, percent, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
+NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 MIN_WIDENED = 1.05  # factor of the standard deviation of a mean, from which on it is stated
 DIGITS_WITH_SPREAD = 4  # of a number that is followed by the scatter of individual gears
 
 
-def identify_report(found: Identified, provenance: Provenance | None = None, *, accepted: bool = False) -> str:
+def identify_report(
+    found: Identified, provenance: Provenance | None = None, *, accepted: bool = False, folder: Path = Path()
+) -> str:
     """Return the report of an identification, as one HTML file that needs nothing else.
 
     Args:
         found: the result
         provenance: how the page came to be, if that is to be shown
         accepted: if true, the gear is written in spite of failed checks
+        folder: that it is written into, as the commands of the page name it
 
     Returns:
         HTML; the same for the same arguments
@@ -56,6 +62,10 @@ def identify_report(found: Identified, provenance: Provenance | None = None, *, 
             "note": found.gear_set.note,
             "verdict": _verdict(found, accepted),
             "failed": found.failed,
+            "panels": list(pictures(found)),
+            "not_shown": not_determined(found),
+            "numbers": numbers_by_source(found),
+            "next": next_commands(found, folder) if accepted or not found.failed else [],
             "accepted": accepted,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],
             "cards": [_card(each, anchors[id(each)]) for each in alone if not each.refused],
@@ -84,14 +94,16 @@ def identify_report(found: Identified, provenance: Provenance | None = None, *, 
 def _verdict(found: Identified, accepted: bool) -> str:
     """Return the outcome in one sentence."""
     failed, checks = len(found.failed), len(found.checks)
-    parts = [_counts(found), *_unexplained(found)]
+    parts = [_counts(found), *_error(found)]
     if failed:
         written = "the gear was written all the same, as accepted" if accepted else "no gear was written"
         parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
+    if found.unchecked:
+        parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
     sentence = "; ".join(parts)
-    return f"{sentence[0].upper()}{sentence[1:]}."
+    return f"{sentence[0].upper()}{sentence[1:]}.".replace(" %", f"{NO_BREAK_SPACE}%")
 
 
 def _counts(found: Identified) -> str:
@@ -116,13 +128,13 @@ def _counts(found: Identified) -> str:
     return f"{len(given)} files: {', '.join(parts)}"
 
 
-def _unexplained(found: Identified) -> list[str]:
-    """Return the error on data held out, from the best to the worst file; empty if there is none."""
-    shares = [each.held_out.relative for each in found.files if each.held_out is not None and not each.refused]
-    if not shares or not np.isfinite(shares).all():
-        return []
-    ends = dict.fromkeys(percent(end) for end in (min(shares), max(shares)))
-    return [f"{' to '.join(ends)} of what varies on data held out is unexplained"]
+def _error(found: Identified) -> list[str]:
+    """Return the error on data held out; of several files the shares of the best and the worst. Empty if there is none."""
+    errors = [each.held_out for each in found.files if each.held_out is not None and not each.refused]
+    if len(errors) < 2:
+        return [f"RMS error on data held out {each.words}" for each in errors]
+    ends = dict.fromkeys(percent(end) for end in (min(each.relative for each in errors), max(each.relative for each in errors)))
+    return [f"RMS errors on data held out {' to '.join(ends)} of what varies"]
 
 
 def _several(count: int, noun: str) -> str:
@@ -188,7 +200,7 @@ def _parameter(each: CombinedParameter, found: Identified) -> dict[str, Any]:
         "source": each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files",
         "widened": number(each.widened, 2) if each.widened > MIN_WIDENED else "",
         "shifts": ", ".join(f"{path} by {number(100.0 * by, 2)} %" for path, by in taken.shift_by_kept.items()),
-        "start": _start(found.start, taken),
+        "start": _start(found.start_set, taken),
         "others": [
             {
                 "file": name,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,9 +13,10 @@ from numpy.typing import NDArray
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
-from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.file_result import FileResult, Picture, Subject
 from strainwave.identification.results.picture_plot import (
     SIGMA_OF_95_PERCENT,
+    draw_measured,
     draw_picture,
     loop_points,
     picture_label,
@@ -28,7 +30,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 ROW_HEIGHT = 0.19  # inches, of a row of a comparison
-MAX_NAME = 22  # letters of the name of a file beside a drawing
+MAX_LETTERS = 22  # of a line of the name of a file beside a drawing
+PANEL_SIZE = (3.5, 2.25)  # inches, of a picture of the first screen
+SUBJECTS: dict[Subject, str] = {  # of the pictures of the first screen, in their order
+    "torque": "Torque, measured and predicted",
+    "friction": "Friction over speed",
+    "twist": "Twist over torque",
+    "error": "Error over a turn, and its orders",
+}
 WHOLE_QUANTILE = 0.8  # of the lengths of intervals; longer ones reach beyond the edge
 BEYOND = f"more than {MAX_DISTANCE:g} σ apart"
 LOOKS = {  # of a file in a comparison: mark, colour, whether filled
@@ -77,7 +86,7 @@ def comparison(numbers: Sequence[tuple[str, Sequence[EstimateRow]]], name: str) 
             axes.plot([0.0, 0.0], [place + 0.5, place + len(rows) + 0.5], color=LIGHT["muted"], linewidth=0.8)
             for row in rows:
                 place += 1
-                ticks.append((place, _short(row.file)))
+                ticks.append((place, textwrap.fill(row.file, MAX_LETTERS)))
                 _interval(axes, row, place)
             place += 1
         axes.set_yticks([where for where, _ in ticks], [label for _, label in ticks], fontsize="small")
@@ -116,10 +125,6 @@ def _looks_legend(figure: Figure, axes: Axes, rows: Sequence[EstimateRow]) -> No
     marks.legend(figure, axes)
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= MAX_NAME else f"{name[: MAX_NAME // 2 - 1]}…{name[-MAX_NAME // 2 :]}"
-
-
 # ---- One file --------------------------------------------------------------------------------------------------------
 
 
@@ -129,8 +134,17 @@ def file_figure(result: FileResult, picture: Picture, name: str) -> str:
     def draw(figure: Figure) -> None:
         marks.legend(figure, draw_picture(figure, picture))
 
-    title = f", {picture.title}" if picture.title else ""
-    return figures.inline(draw, (FIGURE_WIDTH, 3.9), name, f"Measured against modelled, {result.name}{title}")
+    title, height = f", {picture.title}" if picture.title else "", 2.6 if picture.look == "turn" else 3.9
+    return figures.inline(draw, (FIGURE_WIDTH, height), name, f"Measured against modelled, {result.name}{title}")
+
+
+def panel(result: FileResult, picture: Picture, name: str) -> str:
+    """Draw measured and modelled of a picture small, without the residual."""
+
+    def draw(figure: Figure) -> None:
+        marks.legend(figure, draw_measured(figure, picture))
+
+    return figures.inline(draw, PANEL_SIZE, name, f"{SUBJECTS[picture.subject]}, {result.name}")
 
 
 def overview(loop: Picture, table: Picture) -> str:
@@ -140,7 +154,7 @@ def overview(loop: Picture, table: Picture) -> str:
         left, right = figure.subplots(1, 2)
         loop_points(left, loop.curves)
         table_points(right, table.curves)
-        marks.label_axes(left, picture_label(loop), "N.m", "twist", "rad")
+        marks.label_axes(left, f"twist{picture_label(loop).removeprefix('torque')}", "rad", "torque", "N.m")
         marks.label_axes(right, picture_label(table), "N.m", "input speed", "rad/s")
         marks.legend(figure, left)
 

@@ -9,6 +9,7 @@ from importlib import metadata
 from io import StringIO
 from itertools import groupby
 from math import isfinite
+from pathlib import Path
 from typing import Any
 
 from strainwave.files import gear_file
@@ -18,7 +19,6 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.messages import listed, with_options
-from strainwave.report.errors import share_held_out
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
@@ -31,13 +31,16 @@ COLUMNS = (
 MAX_REMARKS = 8  # of a file on a terminal; the report has all
 
 
-def identify_files(found: Identified, provenance: Provenance | None = None, *, accepted: bool = False) -> dict[str, str]:
+def identify_files(
+    found: Identified, provenance: Provenance | None = None, *, accepted: bool = False, folder: Path = Path()
+) -> dict[str, str]:
     """Return the files of a result by their names: numbers as JSON and CSV, the gear, and the report.
 
     Args:
         found: the result
         provenance: command, date and files, if the report is to show them
         accepted: if true, the gear is among them in spite of failed checks
+        folder: that they are written into, as the commands of the report name it
     """
     text = StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
@@ -46,13 +49,13 @@ def identify_files(found: Identified, provenance: Provenance | None = None, *, a
     files = {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
     if accepted or not found.failed:
         files["gear.toml"] = gear_file.text(found.accepted)
-    return files | {"report.html": identify_report(found, provenance, accepted=accepted)}
+    return files | {"report.html": identify_report(found, provenance, accepted=accepted, folder=folder)}
 
 
 def _results(found: Identified) -> dict[str, Any]:
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
-        "start": found.start.name,
+        "start": found.start_set.name,
         "failed": [check.name for check in found.failed],
         "checks": [asdict(check) for check in found.checks],
         "files": [_file(each) for each in found.files],
@@ -202,8 +205,7 @@ def _of_file(result: FileResult) -> Iterator[str]:
     if result.refused:
         yield f"  NOT USED: {with_options(result.refused)}"
         return
-    share = share_held_out(result.held_out)
-    yield f"  {result.model}{f'; error on data held out: {share} of what varies' if share else ''}"
+    yield f"  {result.model}{f'; RMS error on data held out: {result.held_out.words}' if result.held_out is not None else ''}"
     if result.failed:
         yield f"  FAILED: {', '.join(check.name for check in result.failed)}; see above"
     yield from first_remarks(result.remarks, "  ")

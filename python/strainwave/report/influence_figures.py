@@ -13,8 +13,7 @@ from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.report import figures
 from strainwave.rig.influence.series import FACTORS, QUANTITIES, Series
 from strainwave.rig.influence.trend import Trend
-from strainwave.typeset import ZERO_CELSIUS
-from strainwave.typeset import unit as typeset_unit
+from strainwave.typeset import ZERO_CELSIUS, unit as typeset_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

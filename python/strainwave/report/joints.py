@@ -12,7 +12,7 @@ from strainwave.identification.identify import Identified
 from strainwave.identification.joints import Joints
 from strainwave.identification.results.combined_parameter import lines_of
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.report.errors import LEAST_SQUARES, THIS_MODEL, ZERO_MODEL, held_out_rows, share_held_out
+from strainwave.report.errors import LEAST_SQUARES, THIS_MODEL, ZERO_MODEL, held_out_rows
 from strainwave.report.identify_files import failed_lines
 from strainwave.report.page import render
 from strainwave.report.parameter_names import name_of
@@ -80,8 +80,7 @@ def joints_files(joints: Joints, provenance: Provenance | None = None) -> dict[s
 def _of_files(found: Identified) -> Iterator[str]:
     """Yield the model of each file, and its error on data held out."""
     for each in found.files:
-        share = share_held_out(each.held_out)
-        error = f", error on data held out {share} of what varies" if share else ""
+        error = f", RMS error on data held out {each.held_out.words}" if each.held_out is not None else ""
         yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{error}"
 
 

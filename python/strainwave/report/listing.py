@@ -11,8 +11,8 @@ import numpy as np
 from strainwave import Drive, arguments
 from strainwave.analysis.agreement import Agreement
 from strainwave.analysis.difference import Difference
+from strainwave.analysis.error_bounds import positioning_error
 from strainwave.analysis.linear import linearise, modes
-from strainwave.analysis.positioning_error import positioning_error
 from strainwave.analysis.strokes import stroke_within, strokes_apart
 from strainwave.files.described import parameters, parts
 from strainwave.files.entries import NOT_GIVEN

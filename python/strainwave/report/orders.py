@@ -17,8 +17,8 @@ import numpy as np
 from strainwave.files.recording import Recording
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
-from strainwave.orders.ripple import Ripple
 from strainwave.orders.run_up import RunUp
+from strainwave.orders.torque_ripple import Ripple
 from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
 from strainwave.report import orders_figures as plots
 from strainwave.report.page import render

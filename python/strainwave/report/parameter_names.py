@@ -46,17 +46,26 @@ def effect_of(path: str) -> str:
 
 
 def name_of(estimate: FileEstimate) -> str:
-    """Return the name of a parameter: the standard one, else that of its law.
+    """Return the name of the parameter of an estimate.
 
     >>> name_of(FileEstimate("gear.friction_input.law.viscous", "N.m.s/rad", 3e-4, 1e-6, ""))
     'Viscous coefficient'
     >>> name_of(FileEstimate("gear.kinematic_error.amplitude of order 2", "rad", 6e-5, 1e-6, "fourier"))
     'Amplitude A_h at the output, of order 2'
     """
-    path, _, order = estimate.path.partition(" of order ")
+    return name_of_path(estimate.path, estimate.law)
+
+
+def name_of_path(path: str, law: str = "") -> str:
+    """Return the name of a parameter: the standard one, else that of its law.
+
+    >>> name_of_path("gear.stiffness.k1"), name_of_path("gear.hysteresis.stiffness[1]")
+    ('Stiffness K1, first segment', 'Stiffness of hysteresis element, no. 2')
+    """
+    path, _, order = path.partition(" of order ")
     path, _, place = path.removesuffix("]").partition("[")
     plain = path.replace(".law.", ".")
-    words = next((name for end, name in STANDARD.items() if plain.endswith(end)), "") or _documented(path, estimate.law)
+    words = next((name for end, name in STANDARD.items() if plain.endswith(end)), "") or _documented(path, law)
     if place:
         words += f", no. {int(place) + 1}"
     return f"{words}, of order {order}" if order else words

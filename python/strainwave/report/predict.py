@@ -11,8 +11,9 @@ from typing import Any
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.results.changes import PartChange
 from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.held_out import error_in_words
 from strainwave.identification.results.prediction import Prediction
-from strainwave.report.errors import LEAST_SQUARES, Row, error_rows, percent
+from strainwave.report.errors import LEAST_SQUARES, Row, error_rows
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.identify_files import first_remarks
 from strainwave.report.orders import line_numbers, line_words
@@ -20,7 +21,7 @@ from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
-from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
+from strainwave.typeset import number, percent, quantity, uncertain, uncertain_quantity
 
 MAX_LINES = 4  # of the spectrum of a residual, on a terminal
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -30,12 +31,12 @@ def verdict_sentence(found: Prediction) -> str:
     """Return in one sentence whether a recording agrees with a saved gear, and what changed."""
     if found.refused:
         return f"{found.name} cannot be predicted: {found.refused}"
-    of, share = quantity(found.error, found.unit), percent(found.relative)
+    error = f"RMS error {error_in_words(found.error, found.unit, found.varies, found.plain)}"
     allowed = quantity(found.allowed, found.unit)
     if found.contradicts:
-        result = f"{found.name} contradicts {found.gear}: error {of}, {share} of what varies, where {allowed} is allowed"
+        result = f"{found.name} contradicts {found.gear}: {error}, where {allowed} is allowed"
         return f"{result}; {_changes(found) if found.changed else _not_explained(found)}."
-    error = f"error {of}, {share} of what varies, of {allowed} allowed"
+    error = f"{error}, of {allowed} allowed"
     if found.changed:
         return f"{found.name} differs from {found.gear}, within the allowed error: {_changes(found)}; {error}."
     return f"{found.name} agrees with {found.gear}: {error}; {_nothing_changed(found)}."

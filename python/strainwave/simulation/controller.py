@@ -14,13 +14,13 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
 from strainwave.native import kernels
+from strainwave.progress import Progress, by_count
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import beginning_numbers
+from strainwave.simulation.initial import Initial, beginning_numbers
 from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
-from strainwave.simulation.run import Course, Run, check_meaning, progressing, recorded_of
+from strainwave.simulation.run import Course, Run, check_meaning, recorded_of
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.state import State
 
 Array = NDArray[np.float64]
 
@@ -75,10 +75,9 @@ def simulate_controlled(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     inputs: Mapping[str, Scenario | float] | None = None,
-    start: State | None = None,
-    initial: Mapping[str, float] | None = None,
+    initial: Initial | None = None,
     record: Sequence[str] | None = None,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive under a controller that is a function of Python.
 
@@ -94,7 +93,7 @@ def simulate_controlled(
         period: time from one call to the next [s]
         delay: time from a call to its effect [s], at most `period`
         unit: of the command
-        dt, sample, load_torque, temperature, inputs, start, initial, record, progress: as for `simulate`
+        dt, sample, load_torque, temperature, inputs, initial, record, progress: as for `simulate`
 
     Returns:
         as `simulate`; the column `command` holds the command, the motor's columns what it made of the actuation
@@ -130,14 +129,14 @@ def simulate_controlled(
     unit = arguments.text("unit", unit)
     recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
-    state = beginning_numbers(drive, start, initial, _under(0.0, excitation.first()))
+    state = beginning_numbers(drive, initial, _under(0.0, excitation.first()))
     actions = _actions(command.duration, period, delay)
     excitation.check_laid_out(dt)
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
     course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     given = excitation.over(course.time_grid.instants)
-    with progressing(progress, len(given)) as shown:
+    with by_count(progress, "simulating", len(given)) as shown:
         outputs, state = _run(course, state, given, actions, controller, shown)
     outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
     check_meaning(course.time, recorded, outputs, remedy(longest))

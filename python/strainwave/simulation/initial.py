@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,7 @@ from strainwave.simulation.state import State, start_of
 
 Array = NDArray[np.float64]
 Known = tuple[list[int], Array]  # the numbers of quantities, and their values, shape (quantities, members)
+Initial: TypeAlias = State | Mapping[str, float]  # what a run begins with
 QUANTITIES = {name: (number, unit) for number, (name, unit, _) in enumerate(_core.quantities)}
 
 
@@ -62,18 +64,15 @@ def _check_together(drive: Drive, names: set[str], prescribed: bool) -> None:
         raise ValueError("initial current: it follows at once from what this motor is given; leave it out")
 
 
-def beginning_numbers(drive: Drive, start: State | None, initial: Mapping[str, ArrayLike] | None, inputs: Array) -> Array:
+def beginning_numbers(drive: Drive, initial: Initial | Mapping[str, ArrayLike] | None, inputs: Array) -> Array:
     """The numbers of the state that a single run begins in, under the inputs of its first instant.
 
     Raises:
-        TypeError: `start` is no state, or as `known`
-        ValueError: `start` is a state of another drive, it and `initial` are both given, there is no state that has these
-            quantities, or as `known`
+        TypeError: as `known`
+        ValueError: `initial` is a state of another drive, there is no state that has these quantities, or as `known`
     """
-    if start is not None and initial is not None:
-        raise ValueError("start and initial both determine the beginning of a run; give one of them")
-    if start is not None:
-        return start_of(drive, start).numbers
+    if isinstance(initial, State):
+        return start_of(drive, initial).numbers
     given = known(drive, initial)
     if given is None:
         return drive.rest().numbers

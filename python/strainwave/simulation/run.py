@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, Literal, NamedTuple, get_args
 
@@ -16,9 +15,10 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import GENERATED_TITLE, Recording
 from strainwave.messages import listed
 from strainwave.native import kernels
+from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import beginning_numbers, known
+from strainwave.simulation.initial import Initial, beginning_numbers, known
 from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
 from strainwave.simulation.scenario import Scenario
@@ -45,7 +45,7 @@ class Run(Recording):
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
     >>> run = sw.simulate(drive, sw.scenario.constant(5.0, duration=0.1))
-    >>> further = sw.simulate(drive, sw.scenario.constant(0.0, duration=0.1), start=run.end)
+    >>> further = sw.simulate(drive, sw.scenario.constant(0.0, duration=0.1), initial=run.end)
     >>> [round(float(each["output_speed"][0]), 3) for each in (run, further)], run.unit("output_speed")
     ([0.0, -1.066], 'rad/s')
     """
@@ -98,11 +98,10 @@ def simulate(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     inputs: Mapping[str, Scenario | float] | None = None,
-    start: State | None = None,
-    initial: Mapping[str, float] | None = None,
+    initial: Initial | None = None,
     record: Sequence[str] | None = None,
     method: Method | None = None,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive through a command and record its outputs.
 
@@ -118,18 +117,19 @@ def simulate(
         load_torque: torque that holds the output back [N.m], besides the load's own
         temperature: of the gear [K], for friction that depends on it
         inputs: those and other inputs that parts take, by name: {"output_angle": ...} where the load prescribes that [rad]
-        start: where the drive starts, as `end` of another run of a drive with the same models; at rest, untwisted, if not given
         method: "exponential", a Runge-Kutta method of fourth order that lets bristles relax exactly; "rosenbrock", a W-method
             of third order for shafts that rest on stiff bristles without turning round; "moreau_jean", time-stepping of second
             order that looks for no events, however many there are. If not given it is the first, unless a shaft vibrates on
             its bristles faster than steps of `dt` can follow: then steps are chosen as by `simulate_adaptively`, with its
             tolerances; at most a thousand for each of `dt`, or a hundred thousand if that is more.
-        initial: in place of `start`, some of input_angle, output_angle [rad], input_speed, output_speed [rad/s], twist [rad],
-            torque [N.m], current [A], as in {"output_angle": 0.3, "input_speed": 5.0}. The rest follows: one angle or speed
+        initial: where the drive begins; at rest, untwisted, if not given. A state, as `end` of another run of a drive with the
+            same models; or some of input_angle, output_angle [rad], input_speed, output_speed [rad/s], twist [rad], torque
+            [N.m], current [A], as in {"output_angle": 0.3, "input_speed": 5.0}. The rest follows: one angle or speed
             from the other; the twist as the one at which load and friction do not accelerate the output; bristles, motor and
             sensors as they are once they have settled
         record: the outputs to keep, by name; all, if not given
-        progress: show a progress bar
+        progress: None shows a bar on a terminal after a second, True at once, False none; a function is called with a stage
+            and the share done
 
     Returns:
         Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
@@ -166,7 +166,7 @@ def simulate(
     interval = dt if sample is None else arguments.seconds("sample", sample)
     recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
-    state = beginning_numbers(drive, start, initial, excitation.first())
+    state = beginning_numbers(drive, initial, excitation.first())
     course = Course.of(drive, excitation, recorded, dt, interval, signals.instants(drive, state, command.duration))
     time_grid = course.time_grid
     if method is None and time_grid.longest * _core.bristle_frequency(drive) > FASTEST_ON_BRISTLES:
@@ -177,7 +177,6 @@ def simulate(
             load_torque=load_torque,
             temperature=temperature,
             inputs=inputs,
-            start=start,
             initial=initial,
             record=record,
             max_steps=max(MAX_STEPS_OF_SHORT_RUN, MAX_STEPS_PER_FIXED_STEP * (len(time_grid.instants) - 1)),
@@ -189,7 +188,7 @@ def simulate(
         course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
     outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
-    with kernels.prepared(drive, "simulate", steps), progressing(progress, steps) as shown:
+    with kernels.prepared(drive, "simulate", steps), by_count(progress, "simulating", steps) as shown:
         for number, (instants, keep) in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, steps_by = excitation.over(instants), _core.Method[taken]
@@ -306,11 +305,10 @@ def simulate_adaptively(
     load_torque: Scenario | float = 0.0,
     temperature: Scenario | float = ROOM_TEMPERATURE,
     inputs: Mapping[str, Scenario | float] | None = None,
-    start: State | None = None,
-    initial: Mapping[str, float] | None = None,
+    initial: Initial | None = None,
     record: Sequence[str] | None = None,
     max_steps: int = 10_000_000,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive through a command in steps as long as a tolerance allows.
 
@@ -319,7 +317,7 @@ def simulate_adaptively(
     as exactly as at the ends.
 
     Args:
-        drive, command, load_torque, temperature, inputs, start, initial, record, progress: as
+        drive, command, load_torque, temperature, inputs, initial, record, progress: as
             for `simulate`
         rtol: error tolerated in each member of the motion (input angle within its turn, transmission error, both speeds,
             current, state of the controller, bristles) and in the torque, relative to the largest it has been so far
@@ -355,7 +353,7 @@ def simulate_adaptively(
     max_steps = arguments.whole("max_steps", max_steps, 1)
     recorded = recorded_of(drive, record)
     excitation = Excitation.of(drive, command, load_torque, temperature, inputs)
-    state = beginning_numbers(drive, start, initial, excitation.first())
+    state = beginning_numbers(drive, initial, excitation.first())
     check_samples(command.duration, sample, len(recorded))
     samples = grid(sample, command.duration, max(1e-9 * sample, 4.0 * float(np.spacing(command.duration))))
     ends = excitation.ends(signals.instants(drive, state, command.duration), max_steps)
@@ -363,7 +361,7 @@ def simulate_adaptively(
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))
     kernels.prepare(drive, "simulate_adaptively", len(ends))
-    with progressing(progress, len(ends) - 1) as shown:
+    with by_count(progress, "simulating", len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )
@@ -394,7 +392,7 @@ def differentiate(
         the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
     """
     temperature = excitation.first()[TEMPERATURE_PLACE]
-    beginning_numbers(drive, None, initial, excitation.first())  # refuses what is no beginning
+    beginning_numbers(drive, initial, excitation.first())  # refuses what is no beginning
     instants = signals.instants(drive, drive.rest().numbers, excitation.command.duration)
     excitation.check_laid_out(dt if isinstance(samples, np.ndarray) else min(dt, samples))
     time_grid = excitation.time_grid(dt, samples, instants)
@@ -449,16 +447,3 @@ def _finite(end: State, what_to_do: str) -> State:
 
 def _largest_twist(twist: Array) -> float:
     return float(np.abs(twist).max())
-
-
-@contextmanager
-def progressing(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
-    if not wanted:
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(transient=True, console=Console(stderr=True)) as bar:
-        task = bar.add_task("simulating", total=total)
-        yield lambda done: bar.update(task, completed=done)

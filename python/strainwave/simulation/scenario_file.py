@@ -27,6 +27,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.presentation import Presented
 from strainwave.simulation import scenario
 from strainwave.simulation.initial import QUANTITIES
 from strainwave.simulation.run import Run, simulate, simulate_adaptively
@@ -88,7 +89,7 @@ DIFFERENCES = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC
 
 
 @dataclass(frozen=True)
-class ScenarioFile:
+class ScenarioFile(Presented):
     """Scenario of a run: its command, the other inputs of the drive, and its initial values.
 
     Args:
@@ -104,7 +105,7 @@ class ScenarioFile:
 
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
-    >>> pushed = sw.ScenarioFile(sw.scenario.ramp(5.0, duration=0.2), {"load_torque": 3.0}, {"output_angle": 0.1})
+    >>> pushed = sw.simulation.ScenarioFile(sw.scenario.ramp(5.0, duration=0.2), {"load_torque": 3.0}, {"output_angle": 0.1})
     >>> float(pushed.simulate(drive)["output_angle"][0])
     0.1
     """
@@ -221,10 +222,11 @@ class ScenarioFile:
 
         >>> import tempfile
         >>> import strainwave as sw
-        >>> wave, drive = sw.ScenarioFile(sw.scenario.sine(0.1, frequency=1.0, duration=2.0)), sw.load("position-drive")
+        >>> drive = sw.load("position-drive")
+        >>> wave = sw.simulation.ScenarioFile(sw.scenario.sine(0.1, frequency=1.0, duration=2.0))
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     wave.save(f"{folder}/wave.toml", drive)
-        ...     sw.ScenarioFile.read(f"{folder}/wave.toml", drive) == wave
+        ...     sw.simulation.ScenarioFile.read(f"{folder}/wave.toml", drive) == wave
         True
         """
         import tomlkit

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.messages import listed, shortened
+from strainwave.presentation import Presented, Row
 
 Array = NDArray[np.float64]
 
 
-class State(Mapping[str, float]):
+class State(Presented, Mapping[str, float]):
     """A drive at one instant: its continuous numbers, what its parts remember, and which way its shafts slip.
 
     A mapping of names to numbers. The numbers of a part have its name in front: ``state["friction_input.deflection"]``.
@@ -43,7 +44,7 @@ class State(Mapping[str, float]):
         return state
 
     def __init__(self) -> None:
-        raise TypeError("a state is made by a drive's rest(), by sw.equilibrium(...), or is the end of a run")
+        raise TypeError("a state is made by a drive's rest(), by sw.analysis.equilibrium(...), or is the end of a run")
 
     def replace(self, changes: Mapping[str, float] | None = None, /, **named: float) -> State:
         """The same state with other numbers, by their names.
@@ -110,8 +111,11 @@ class State(Mapping[str, float]):
     def __hash__(self) -> int:
         return hash((tuple(_core.shape(self.drive).items()), tuple(self.numbers.tolist())))
 
-    def __repr__(self) -> str:
-        return f"State({', '.join(f'{name}={value:.6g}' for name, value in self.items() if value != 0.0)})"
+    def _headline(self) -> str:
+        return ", ".join(f"{name}={value:.6g}" for name, value in self.items() if value != 0.0)
+
+    def _rows(self) -> Iterator[Row]:
+        return (Row(name, value, self.units[name]) for name, value in self.items())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return State.of, (self.drive, np.array(self.numbers))
@@ -151,7 +155,7 @@ def same_shape(one: Drive, other: Drive) -> bool:
     return one is other or _core.shape(one) == _core.shape(other)
 
 
-def start_of(drive: Drive, state: object, name: str = "start") -> State:
+def start_of(drive: Drive, state: object, name: str = "initial") -> State:
     """A state given as argument `name`, if it is one of this drive.
 
     Raises:
@@ -160,7 +164,7 @@ def start_of(drive: Drive, state: object, name: str = "start") -> State:
     """
     if not isinstance(state, State):
         raise TypeError(
-            f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.equilibrium(...) is one"
+            f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.analysis.equilibrium(...) is one"
         )
     if not same_shape(drive, state.drive):
         mine, given = _core.shape(drive), _core.shape(state.drive)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, arguments
+from strainwave import Drive, Gear, arguments, typeset
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import shortened
+from strainwave.presentation import Pictured, Row, counted, rows_of_fields
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, constant
 from strainwave.simulation.state import State
@@ -18,6 +20,9 @@ from strainwave.tuning.approach import friction_at_rest, lost_motion
 from strainwave.tuning.cascade import Plant, line_of_friction
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import UPPER_QUANTILE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -51,7 +56,7 @@ def pulse_travel(torque: float, width: float, inertia: float, friction: float) -
         ValueError: a number is out of its range
 
     Source:
-        document P, "pulse" command of the experiments; own derivation
+        the position control article, "pulse" command of the experiments; own derivation
 
     >>> round(pulse_travel(torque=0.15, width=0.02, inertia=1.2e-3, friction=0.072), 6)
     0.027083
@@ -92,7 +97,7 @@ def _travel_per_square(torque: float, inertia: float, friction: float) -> float:
 
 
 @dataclass(frozen=True)
-class PulsePlan:
+class PulsePlan(Pictured):
     """A train of equal pulses for a drive that sticks.
 
     Attributes:
@@ -109,7 +114,7 @@ class PulsePlan:
         actuation_per_torque: what the motor takes per torque: [A/(N.m)] or [1]
 
     >>> import strainwave as sw
-    >>> plan = sw.plan_pulses("position-drive", 0.005)
+    >>> plan = sw.tuning.plan_pulses("position-drive", 0.005)
     >>> [round(1e3 * width) for width in plan.widths], round(plan.torque, 3), round(plan.friction, 3)  # ms, N.m, N.m
     ([95], 0.153, 0.074)
     """
@@ -151,6 +156,21 @@ class PulsePlan:
         level = np.resize([sense * self.actuation_per_torque * self.torque, 0.0], edges.size)
         return Scenario(float(ends[-1]), edges, level, np.zeros(edges.size))
 
+    def _headline(self) -> str:
+        travel, torque = typeset.quantity(self.travel, "rad"), typeset.quantity(self.torque, "N.m")
+        return f"{counted(len(self.widths), 'pulse')} of {torque} for {travel} of {self.gear_set.name}"
+
+    def _rows(self) -> Iterator[Row]:
+        return (row for row in rows_of_fields(self) if row.name not in ("gear set", "drive"))
+
+    def plot(self) -> Figure:
+        """Return a figure of the train of pulses over time."""
+        return self.command.plot("command of the motor", "A" if "A/" in self._unit else "N.m")
+
+    @property
+    def _unit(self) -> str:
+        return "A/(N.m)" if self.actuation_per_torque != 1.0 else "1"
+
 
 def plan_pulses(
     drive: GearSet | Drive | str,
@@ -181,7 +201,7 @@ def plan_pulses(
             nor a voltage, or its friction does not hold it at rest
 
     Source:
-        document P, experiments (pulse control); own derivation
+        the position control article, experiments (pulse control); own derivation
 
     >>> plan = plan_pulses("position-drive", 0.002)
     >>> len(plan.widths), round(1e3 * plan.widths[0])  # ms
@@ -217,7 +237,7 @@ def _breakaway(gear: Gear) -> float:
 
 
 @dataclass(frozen=True)
-class PulsedMove:
+class PulsedMove(Pictured):
     """A move by pulses.
 
     Attributes:
@@ -228,7 +248,7 @@ class PulsedMove:
         end: state at the end, from which another move can start
 
     >>> import strainwave as sw
-    >>> move = sw.position_by_pulses(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4)
+    >>> move = sw.tuning.position_by_pulses(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, (1e3 * move.angles).round(2)  # mrad of the output: at the start, and after each pulse
     (True, array([0.  , 2.55, 5.03]))
     """
@@ -254,6 +274,24 @@ class PulsedMove:
         """True if the error is within the tolerance."""
         return abs(self.error) <= self.tolerance
 
+    def _headline(self) -> str:
+        verdict = "reached" if self.reached else "NOT reached"
+        return f"{counted(self.pulses, 'pulse')}, {verdict}, error {typeset.quantity(self.error, 'rad')}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("travel asked for", self.travel, "rad")
+        yield Row("error", self.error, "rad", note=f"tolerance {typeset.quantity(self.tolerance, 'rad')}")
+        for number, (width, angle) in enumerate(zip(self.widths.tolist(), self.angles[1:].tolist(), strict=True), start=1):
+            yield Row(f"angle after pulse {number}", angle, "rad", note=f"width {typeset.quantity(width, 's')}")
+
+    def plot(self) -> Figure:
+        """Return a figure of the angle at rest after each pulse, with the travel asked for."""
+        from strainwave.drawing.simple import Series, points_figure
+
+        pulse = np.arange(float(len(self.angles)))
+        angle = Series("angle of the output", "rad", self.angles)
+        return points_figure("Positioning by pulses", Series("pulse", "1", pulse), angle, {"travel asked for": self.travel})
+
 
 def position_by_pulses(
     plan: PulsePlan,
@@ -261,7 +299,7 @@ def position_by_pulses(
     *,
     measured: bool = True,
     max_pulses: int = DEFAULT_MAX_PULSES,
-    start: State | None = None,
+    initial: State | None = None,
     drive: Drive | None = None,
 ) -> PulsedMove:
     r"""Return the simulated move of a drive by pulses: the output measured at rest between them, or the train as planned.
@@ -283,7 +321,7 @@ def position_by_pulses(
         tolerance: of the output at rest [rad]
         measured: False for the train of the plan, without correction
         max_pulses: number of measured pulses after which the move ends, reached or not
-        start: where the drive starts, as `end` of another move; untwisted at rest if not given
+        initial: where the drive begins, as `end` of another move; untwisted at rest if not given
         drive: that is moved in truth, with parts of the same models as `plan.drive`, which it is if not given
 
     Returns:
@@ -294,7 +332,7 @@ def position_by_pulses(
         ValueError: a number is out of its range, or the drive does not come to rest after a pulse
 
     Source:
-        document P, experiments (pulse control); the correction: own derivation
+        the position control article, experiments (pulse control); the correction: own derivation
 
     >>> move = position_by_pulses(plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, move.pulses < 6
@@ -303,7 +341,7 @@ def position_by_pulses(
     tolerance = arguments.number("tolerance", tolerance, "rad", low=0.0)
     arguments.whole("max_pulses", max_pulses, 1)
     moved_drive = plan.drive if drive is None else arguments.drive(drive)
-    rest = _Resting(plan, moved_drive, moved_drive.rest() if start is None else start, MAX_DRIFT * tolerance)
+    rest = _Resting(plan, moved_drive, moved_drive.rest() if initial is None else initial, MAX_DRIFT * tolerance)
     widths = _corrected(plan, rest, tolerance, max_pulses) if measured else _as_planned(plan, rest)
     return PulsedMove(plan.travel, tolerance, np.array(widths), np.array(rest.angles), rest.state)
 
@@ -344,7 +382,7 @@ class _Resting:
         """Give one pulse of a width [s], wait for rest, and return the travels of input, over the ratio, and output [rad]."""
         command, moved = self.plan.pulses([width], sense), np.zeros(2)
         for _ in range(MAX_RESTS):
-            run = simulate(self.drive, command, MAX_STEP, sample=0.1 * self.plan.rest, start=self.state,
+            run = simulate(self.drive, command, MAX_STEP, sample=0.1 * self.plan.rest, initial=self.state,
                            record=["input_angle", "output_angle"])  # fmt: skip
             self.state = run.end
             angles = np.array([run["input_angle"] / self.drive.gear.kinematics.ratio, run["output_angle"]])
@@ -362,7 +400,7 @@ class _Resting:
 
 
 @dataclass(frozen=True)
-class PulseRepeatability:
+class PulseRepeatability(Pictured):
     """Moves by pulses of drives with drawn friction.
 
     Attributes:
@@ -371,7 +409,7 @@ class PulseRepeatability:
         reached: share of the drives whose error is within the tolerance
 
     >>> import strainwave as sw
-    >>> found = sw.pulse_repeatability(sw.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
+    >>> found = sw.tuning.pulse_repeatability(sw.tuning.plan_pulses("position-drive", 0.005), tolerance=1e-4, members=5)
     >>> found.pulses, (1e3 * found.errors).round(2)  # mrad of the output
     (array([2, 4, 2, 4, 2]), array([ 0.04,  0.1 , -0.06, -0.07,  0.03]))
     """
@@ -399,6 +437,21 @@ class PulseRepeatability:
     def upper_pulses(self) -> float:
         """Number of pulses that is enough for 95 % of the drives."""
         return float(np.quantile(self.pulses, UPPER_QUANTILE, method="higher"))
+
+    def _headline(self) -> str:
+        share = typeset.number(100.0 * self.reached, 3)
+        return f"{share} % of {len(self.errors)} drives within the tolerance, median {self.median_pulses:g} pulses"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("share within the tolerance", self.reached, "1")
+        yield Row("median error", self.median_error, "rad", note=f"95 %: {typeset.quantity(self.upper_error, 'rad')}")
+        yield Row("median pulses", self.median_pulses, "1", note=f"95 %: {self.upper_pulses:g}")
+
+    def plot(self) -> Figure:
+        """Return a figure of the histogram of the errors."""
+        from strainwave.drawing.simple import Series, histograms_figure
+
+        return histograms_figure(f"Errors of {len(self.errors)} drives", [Series("error of the output", "rad", self.errors)])
 
 
 def pulse_repeatability(

@@ -14,7 +14,7 @@ MAX_GHOST_SHARE = 0.25  # of the amplitude of the line, beyond which a second li
 
 
 def outcome(seed: int) -> Outcome:
-    """Return the outcome of `sw.ripple` for a drawn joint."""
+    """Return the outcome of `sw.orders.ripple` for a drawn joint."""
     random = np.random.default_rng(seed)
     ratio, motion = float(random.choice(RATIOS)), str(random.choice(["one way", "there and back", "triangle", "sine"]))
     order = float(random.choice([1.0, 2.0, 2.0, 4.0])) * ratio  # per turn of the joint
@@ -47,7 +47,7 @@ def outcome(seed: int) -> Outcome:
         f"{1e3 * amplitude:.3g} mA in {1e3 * noise:.2g}, error {1e6 * error:.0f} µrad"
     )
     try:
-        result = sw.ripple(recording, "current", ratio=ratio if known else None)
+        result = sw.orders.ripple(recording, "current", ratio=ratio if known else None)
     except ValueError as problem:
         return Outcome("refused", str(problem))
     width = 2.0 * max(1.0, result.resolution)

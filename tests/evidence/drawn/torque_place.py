@@ -59,7 +59,9 @@ def outcome(seed: int) -> Outcome:
             if each.path in truth and each.state == "identified" and place != "behind the gear":
                 pairs.append((f"{place}: {each.path}", each.value, each.sigma, truth[each.path]))
             if each.path == "load.inertia" and each.state == "identified":
-                wrong_rotor = abs(result.start.gear.input_inertia - of_gear) * RATIO**2 if place != "behind the gear" else 0.0
+                wrong_rotor = (
+                    abs(result.start_set.gear.input_inertia - of_gear) * RATIO**2 if place != "behind the gear" else 0.0
+                )
                 pairs.append((f"{place}: {each.path}", each.value, float(np.hypot(each.sigma, wrong_rotor)), load))
             if each.path.startswith("gear.friction_input") and each.state == "identified" and place == "behind the gear":
                 return Outcome("wrong", f"{place}: {each.path} {each.value:.4g} identified from a torque without friction")

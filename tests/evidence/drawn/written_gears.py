@@ -64,7 +64,9 @@ def outcome(seed: int) -> Outcome:
     return judged(found, saved, predicted, speed, friction)
 
 
-def judged(found: sw.Identified, saved: GearSet, predicted: sw.Prediction, speed: float, friction: float) -> Outcome:
+def judged(
+    found: sw.identification.Identified, saved: GearSet, predicted: sw.identification.Prediction, speed: float, friction: float
+) -> Outcome:
     """Return the outcome of a gear that was written and read, and of its prediction."""
     tiny = [path for path, each in every(saved.drive).items() if 0.0 < abs(each.value) < MIN_NUMBER and path != "motor.inertia"]
     if tiny:

@@ -221,12 +221,12 @@ def of_kind(kind: str, seed: int) -> Outcome:
     return Outcome("wrong" if wrong else "right", f"{kind}: {'; '.join(wrong)}")
 
 
-def _of_gear(found: sw.Identified, saved: GearSet) -> Iterator[str]:
+def _of_gear(found: sw.identification.Identified, saved: GearSet) -> Iterator[str]:
     """Yield the numbers of a written gear that are limits or rounding, or that are far from the start set without a reason.
 
     A number that is not identified is that of the start set within its spread, unless the record excludes that.
     """
-    before = every(found.start.gear)
+    before = every(found.start_set.gear)
     estimates = {plain(each.path): each for file in found.files for each in file.estimates}
     for path, each in every(saved.gear).items():
         old = before[path].value if path in before else 0.0
@@ -248,7 +248,7 @@ def _is_limit(each: Parameter) -> bool:
     return any(abs(each.value - end) < LIMIT_DISTANCE * abs(end) for end in ends)
 
 
-def _of_lists(found: sw.Identified) -> Iterator[str]:
+def _of_lists(found: sw.identification.Identified) -> Iterator[str]:
     """Yield the estimates that are rounding, and those that are listed as identified and are a limit of 0.
 
     One that is not identified, and that the set has no prior of, stays where its fit started: it is not written.

@@ -6,8 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.analysis.branches import monotone, slid, thinned, turning_points
 from strainwave.statistics.scale import noise_sigma
 

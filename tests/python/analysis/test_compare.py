@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from strainwave import Agreement, Difference, Quantity, Recording, compare
+from hypothesis import given, settings, strategies as st
+from strainwave import Recording, compare
+from strainwave.analysis import Agreement, Difference
+from strainwave.files import Quantity
 from strainwave.files.entries import Entry
 
 from tests.support.samples import sample

@@ -8,8 +8,7 @@ import control
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import assume, given, settings, strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import _core
@@ -70,7 +69,7 @@ def test_gravity_adds_to_the_spring_while_the_input_sticks() -> None:
     """J w^2 = k + m g l cos theta_out, and the states of the input are gone."""
     drive = geared(damping=0.0, friction_input=sw.friction.Coulomb(coulomb=5.0))
     start = drive.rest()
-    state = sw.equilibrium(drive, start=start.replace(input_angle=2.0))
+    state = sw.analysis.equilibrium(drive, initial=start.replace(input_angle=2.0))
     linear = sw.linearise(drive, state)
     assert linear.states == ("motor.current", "transmission_error", "output_speed")
     stiffness = K + 15.0 * np.cos(outputs(drive, state)["output_angle"])
@@ -243,7 +242,7 @@ def test_a_small_step_is_followed_to_second_order(command: float) -> None:
         friction_input=sw.friction.Viscous(viscous=1e-3),
         kinematic_error=sw.kinematic_error.Fourier(order=[2], amplitude=[2e-4], phase=[0.4]),
     )
-    state = sw.equilibrium(drive, command=command)
+    state = sw.analysis.equilibrium(drive, command=command)
     linear = sw.linearise(drive, state, command=command)
     at_rest, row = outputs(drive, state, command), linear.outputs.index("torque")
     n = len(linear.states)
@@ -251,7 +250,7 @@ def test_a_small_step_is_followed_to_second_order(command: float) -> None:
     matrix[:n, :n], matrix[:n, n] = linear.A, linear.B[:, 0]
     left_out = []
     for size in (2e-4, 1e-4):
-        run = sw.simulate(drive, sw.scenario.constant(command + size, 0.05), dt=1e-5, sample=1e-3, start=state)
+        run = sw.simulate(drive, sw.scenario.constant(command + size, 0.05), dt=1e-5, sample=1e-3, initial=state)
         states = np.array([(expm(matrix * t) @ np.append(np.zeros(n), size))[:n] for t in run["time"]])
         followed = at_rest["torque"] + states @ linear.C[row] + size * linear.D[row, 0]
         assert np.abs(run["torque"] - followed).max() <= 0.05 * np.ptp(run["torque"])
@@ -310,7 +309,7 @@ def test_warmth_is_an_input() -> None:
     law = sw.friction.Thermal(law=sw.friction.Viscous(viscous=2e-3), viscous_fall=0.025)
     drive = geared(DISC, friction_input=law)
     linear = sw.linearise(drive, command=12.0)
-    speed = sw.equilibrium(drive, command=12.0).input_speed
+    speed = sw.analysis.equilibrium(drive, command=12.0).input_speed
     slower = 0.025 * 2e-3 * speed / (2e-3 + 0.1 * 0.12 / 0.5)
     assert linear.response(1e-6, "input_speed", "temperature").real == pytest.approx(slower, rel=1e-6)
 
@@ -355,7 +354,7 @@ def test_modes_of_random_two_inertia_drives(
     gear = sw.Gear(kinematics=kinematics, stiffness=sw.stiffness.Linear(k=k), input_inertia=wave_generator)
     drive = sw.Drive(gear=gear, motor=motor(inertia=rotor), load=sw.loads.Inertia(inertia=j_out))
     j_in, ratio = wave_generator + rotor, kinematics.ratio
-    found = sw.modes(drive)
+    found = sw.analysis.modes(drive)
     assert found["free"] == pytest.approx([sqrt(k * (1.0 / j_out + 1.0 / (ratio**2 * j_in)))], rel=1e-9)
     assert found["input held"] == pytest.approx([sqrt(k / j_out)], rel=1e-9)
 
@@ -372,7 +371,7 @@ def test_modes_with_a_spring_at_the_load(k: float, reduction: float, j_in: float
         sw.loads.Pendulum(inertia=j_out, gravity_torque=at_load),
         sw.loads.TorqueTable(inertia=j_out, angle=[-1.0, 1.0], held_torque=[-at_load, at_load]),
     ):
-        found = sw.modes(sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=0.0), load=load))
+        found = sw.analysis.modes(sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=0.0), load=load))
         assert found["free"] == pytest.approx(free, rel=1e-6)
         assert found["input held"] == pytest.approx(held, rel=1e-9)
 
@@ -401,8 +400,8 @@ def test_modes_of_a_spring_that_bends_are_those_of_its_tangent_at_rest(stiffness
         gear = sw.Gear(stiffness=stiffness, hysteresis=hysteresis, input_inertia=2e-5)
         drive = sw.Drive(gear=gear, motor=sw.motor.BrushlessDC(inertia=1e-4), load=sw.loads.Inertia(inertia=0.5))
         free, held = in_closed_form(k + added, 100.0, 1.2e-4, 0.5)
-        assert sw.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
-        assert sw.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
+        assert sw.analysis.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
+        assert sw.analysis.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
 
 
 def test_modes_are_those_of_the_shafts_whatever_damps_drives_or_disturbs_them() -> None:
@@ -427,8 +426,8 @@ def test_modes_are_those_of_the_shafts_whatever_damps_drives_or_disturbs_them() 
     )
     free, held = in_closed_form(1.2e4, 100.0, 1.2e-4, 0.5)
     for drive in (plain, busy):
-        assert sw.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
-        assert sw.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
+        assert sw.analysis.modes(drive)["free"] == pytest.approx(free, rel=1e-9)
+        assert sw.analysis.modes(drive)["input held"] == pytest.approx(held, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -443,7 +442,7 @@ def test_modes_are_those_of_the_shafts_whatever_damps_drives_or_disturbs_them() 
     ],
 )
 def test_modes_of_the_drives_that_come_with_the_package(name: str, free: float, held: float) -> None:
-    found = sw.modes(sw.load(name))
+    found = sw.analysis.modes(sw.load(name))
     assert found["free"] == pytest.approx([free], rel=1e-9)
     assert found["input held"] == pytest.approx([held], rel=1e-9)
 
@@ -451,7 +450,7 @@ def test_modes_of_the_drives_that_come_with_the_package(name: str, free: float, 
 def test_modes_of_the_robot_joint_whose_arm_swings() -> None:
     k = 26700.5 + 17.8e3 + 8.9e3 + 4.45e3
     free, held = in_closed_form(k, 100.0, 5.48e-5 + 0.413e-4, 4.0, 59.0)
-    found = sw.modes(sw.load("robot-joint"))
+    found = sw.analysis.modes(sw.load("robot-joint"))
     assert found["free"] == pytest.approx(free, rel=1e-9)
     assert found["input held"] == pytest.approx(held, rel=1e-9)
 
@@ -459,9 +458,9 @@ def test_modes_of_the_robot_joint_whose_arm_swings() -> None:
 @pytest.mark.parametrize("load", [sw.loads.Prescribed(), sw.loads.Brake(inertia=0.1)])
 def test_modes_need_an_output_shaft_that_is_free(load: object) -> None:
     with pytest.raises(ValueError, match=r"needs an output shaft that torques move|needs a load that does not brake"):
-        sw.modes(sw.Drive(load=load))
+        sw.analysis.modes(sw.Drive(load=load))
     with pytest.raises(TypeError, match="drive"):
-        sw.modes(sw.Gear())
+        sw.analysis.modes(sw.Gear())
 
 
 @pytest.mark.parametrize("name", sw.catalogue("drives"))
@@ -481,7 +480,7 @@ def test_a_state_of_the_whole_drive_is_taken_over() -> None:
     law = sw.control.PID(proportional=2.0, derivative=0.05)
     plain = sw.Drive(control=law, load=sw.loads.Pendulum(inertia=0.1, gravity_torque=5.0))
     whole = plain.replace(control=sw.control.Sampled(law=law, period=1e-3), meter=sw.meter.EnergyMeter())
-    held = sw.equilibrium(plain, command=0.5)
+    held = sw.analysis.equilibrium(plain, command=0.5)
     state = whole.rest().replace({name: value for name, value in held.items() if name in whole.rest()})
     expected, found = sw.linearise(plain, held, command=0.5), sw.linearise(whole, state, command=0.5)
     assert np.array_equal(found.A, expected.A)
@@ -500,7 +499,7 @@ def test_a_load_that_swings_back_comes_to_rest(amplitude: float) -> None:
         motor=sw.motor.CurrentSource(torque_constant=0.0755, inertia=1e-4),
         load=sw.loads.Pendulum(inertia=0.8, gravity_torque=11.0, gravity_phase=0.6),
     )
-    state = sw.equilibrium(drive)
-    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), start=state, sample=0.1)
+    state = sw.analysis.equilibrium(drive)
+    run = sw.simulate(drive, sw.scenario.constant(0.0, 0.5), initial=state, sample=0.1)
     assert np.ptp(run["output_angle"]) < 1e-9
     assert np.isfinite(sw.linearise(drive).poles).all()

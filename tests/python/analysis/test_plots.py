@@ -38,7 +38,7 @@ def test_frequencies_that_are_not_given_contain_all_poles() -> None:
 
 
 def test_a_response_to_sines_states_their_amplitude() -> None:
-    answer = sw.frequency_response(DRIVE, [1.0, 2.0, 4.0], amplitude=0.01)
+    answer = sw.analysis.frequency_response(DRIVE, [1.0, 2.0, 4.0], amplitude=0.01)
     figure = answer.plot()
     assert figure.get_suptitle().replace("\N{NO-BREAK SPACE}", " ") == "Response of output angle to a command of 10 mrad"
     assert figure.axes[0].get_title(loc="left") == "magnitude"  # rad / rad
@@ -58,7 +58,7 @@ def test_the_phase_has_no_jump_and_begins_in_the_first_turn_backward() -> None:
 
 def test_bars_are_the_changes_by_one_percent_the_largest_first() -> None:
     paths = ["load.inertia", "load.gravity_torque", "motor.torque_constant", "gear.friction_input.viscous"]
-    found = sw.derivatives(DRIVE, sw.scenario.sine(0.1, 1.0, 1.0), paths, sample=1e-3)
+    found = sw.analysis.derivatives(DRIVE, sw.scenario.sine(0.1, 1.0, 1.0), paths, sample=1e-3)
     (axes,) = found.plot("output_angle").axes
     effects = found.effects("output_angle")
     names = [label.get_text() for label in axes.get_yticklabels()]
@@ -73,7 +73,9 @@ def test_bars_are_the_changes_by_one_percent_the_largest_first() -> None:
 def test_of_many_parameters_the_strongest_are_drawn() -> None:
     drive = DRIVE.replace(gear=sw.load("hfuc-25-100"))
     paths = [path for path in every(drive) if path.startswith(("gear.stiffness", "gear.hysteresis", "load."))]
-    found = sw.derivatives(drive, sw.scenario.sine(0.1, 1.0, 0.1), [*paths, "gear.damping", "gear.input_inertia"], sample=1e-2)
+    found = sw.analysis.derivatives(
+        drive, sw.scenario.sine(0.1, 1.0, 0.1), [*paths, "gear.damping", "gear.input_inertia"], sample=1e-2
+    )
     figure = found.plot()
     assert len(figure.axes[0].patches) == MAX_BARS < len(found.parameters)
     assert f"the {MAX_BARS} strongest of {len(found.parameters)} parameters" in " ".join(figure.get_suptitle().split())

@@ -29,7 +29,7 @@ def test_the_speed_of_a_motor_falls_with_its_friction_as_its_solution_says() -> 
     viscous, back_emf, voltage = 1e-3, 0.05, 12.0
     drive = free_input(sw.friction.Viscous(viscous=viscous), back_emf)
     paths = ["gear.friction_input.viscous", "motor.inertia"]
-    found = sw.derivatives(drive, sw.scenario.constant(voltage, 0.1), paths, sample=1e-3)
+    found = sw.analysis.derivatives(drive, sw.scenario.constant(voltage, 0.1), paths, sample=1e-3)
     time, damping = found.run.time, RESISTANCE * viscous + TORQUE_CONSTANT * back_emf
     end, constant = TORQUE_CONSTANT * voltage / damping, INERTIA * RESISTANCE / damping
     fading = np.exp(-time / constant)
@@ -45,7 +45,7 @@ def test_derivatives_go_through_the_moment_of_breakaway_which_moves() -> None:
     coulomb, breakaway, rate = 0.03, 0.045, 10.0  # N.m, N.m, V/s
     drive = free_input(sw.friction.Coulomb(coulomb=coulomb, breakaway=breakaway), 0.0)
     paths = ["gear.friction_input.coulomb", "gear.friction_input.breakaway"]
-    found = sw.derivatives(drive, sw.scenario.ramp(rate, 0.1), paths, sample=1e-3)
+    found = sw.analysis.derivatives(drive, sw.scenario.ramp(rate, 0.1), paths, sample=1e-3)
     growth = TORQUE_CONSTANT * rate / RESISTANCE
     start = breakaway / growth
     time = np.maximum(found.run.time, start)
@@ -62,7 +62,7 @@ def test_a_derivative_is_the_same_whatever_others_are_asked_for(count: int) -> N
     """They are worked out several at a time, in as many runs as that takes; each stands elsewhere among others."""
     numbers = [f"gear.hysteresis.{name}[{i}]" for name in ("stiffness", "breakaway") for i in range(6)]
     numbers += ["gear.damping", "motor.inertia", "load.inertia"]
-    all_of_them, some = (sw.derivatives(DRIVE, command(0.05), each) for each in (numbers, numbers[-count:]))
+    all_of_them, some = (sw.analysis.derivatives(DRIVE, command(0.05), each) for each in (numbers, numbers[-count:]))
     assert np.array_equal(some.values, all_of_them.values[-count:])
     assert np.all(np.any(some.values, axis=(1, 2)))
     assert some.run == all_of_them.run
@@ -71,7 +71,7 @@ def test_a_derivative_is_the_same_whatever_others_are_asked_for(count: int) -> N
 def test_the_path_of_a_sequence_is_all_its_elements() -> None:
     gear = sw.Gear(kinematic_error=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.0, 0.5]))
     drive = sw.Drive(gear=gear)
-    found = sw.derivatives(drive, sw.scenario.step(1.0, 0.01), ["gear.kinematic_error.amplitude", "motor.resistance"])
+    found = sw.analysis.derivatives(drive, sw.scenario.step(1.0, 0.01), ["gear.kinematic_error.amplitude", "motor.resistance"])
     assert dict(found.parameters) == {
         "gear.kinematic_error.amplitude[0]": "rad",
         "gear.kinematic_error.amplitude[1]": "rad",
@@ -90,11 +90,11 @@ def test_steps_too_coarse_at_rest_are_refused_as_they_are_of_a_run() -> None:
     with pytest.raises(FloatingPointError, match="too coarse for this drive") as refusal:
         sw.simulate(drive, volts)
     with pytest.raises(FloatingPointError, match=re.escape(str(refusal.value))):
-        sw.derivatives(drive, volts, ["load.inertia"])
+        sw.analysis.derivatives(drive, volts, ["load.inertia"])
 
 
 def test_derivatives_go_through_a_pickle() -> None:
-    found = sw.derivatives(DRIVE, command(0.05), ["motor.resistance", "load.inertia"], sample=1e-3)
+    found = sw.analysis.derivatives(DRIVE, command(0.05), ["motor.resistance", "load.inertia"], sample=1e-3)
     again = pickle.loads(pickle.dumps(found))
     assert np.array_equal(again.values, found.values)
     assert (again.run, again.parameters) == (found.run, found.parameters)
@@ -103,12 +103,12 @@ def test_derivatives_go_through_a_pickle() -> None:
 def test_what_there_is_not_is_refused_with_what_there_is() -> None:
     drive, command = sw.Drive(), sw.scenario.step(1.0, 0.01)
     with pytest.raises(ValueError, match=r'^the model has no parameter "motor.resistanse"; near it are motor.resistance'):
-        sw.derivatives(drive, command, ["motor.resistanse"])
+        sw.analysis.derivatives(drive, command, ["motor.resistanse"])
     with pytest.raises(ValueError, match=r"^parameters must name at least one number$"):
-        sw.derivatives(drive, command, [])
+        sw.analysis.derivatives(drive, command, [])
     with pytest.raises(TypeError, match=r"^parameters must be a list of names, not 'motor.resistance'$"):
-        sw.derivatives(drive, command, "motor.resistance")
-    found = sw.derivatives(drive, command, ["motor.resistance"])
+        sw.analysis.derivatives(drive, command, "motor.resistance")
+    found = sw.analysis.derivatives(drive, command, ["motor.resistance"])
     with pytest.raises(ValueError, match=r'^no output "speed"; there are command, input_angle'):
         found["speed", "motor.resistance"]
     with pytest.raises(ValueError, match=r'^no derivatives by "motor.inertia"; there are those by motor.resistance$'):
@@ -133,6 +133,6 @@ def test_there_is_no_derivative_by_what_is_no_measure(sensor: object, name: str,
     """They would come out as 0, though the run does change."""
     drive = DRIVE.replace(sensors=sw.Sensors(input_angle=sensor))
     with pytest.raises(ValueError, match=f"^there is no derivative by sensors.input_angle.{name}: {why}$"):
-        sw.derivatives(drive, command(0.01), [f"sensors.input_angle.{name}", "load.inertia"])
+        sw.analysis.derivatives(drive, command(0.01), [f"sensors.input_angle.{name}", "load.inertia"])
     with pytest.raises(ValueError, match=r"^there is no derivative by gear\.kinematic_noise\.seed: "):
-        sw.derivatives(drive, command(0.01), ["gear.kinematic_noise.seed"])
+        sw.analysis.derivatives(drive, command(0.01), ["gear.kinematic_noise.seed"])

@@ -7,8 +7,7 @@ from math import atan2, exp, inf, log, pi, sqrt
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from scipy.optimize import brentq
 from scipy.special import lambertw
 from strainwave.analysis.settling import settling_time

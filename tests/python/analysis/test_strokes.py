@@ -22,7 +22,7 @@ def test_models_that_differ_in_friction_differ_by_its_effect_on_current_and_angl
     drive = sw.load("position-drive")
     wrong = 5.2e-3  # N.m
     stronger = drive.replace({"gear.friction_input.coulomb": 0.072 + wrong, "gear.friction_input.breakaway": 0.0748 + wrong})
-    apart = sw.strokes_apart(stronger, drive, [20.0, 100.0])
+    apart = sw.analysis.strokes_apart(stronger, drive, [20.0, 100.0])
     assert apart.names == ("stroke", "output_angle", "current", "used")
     assert apart["output_angle"] == pytest.approx(wrong * 2.0 / (0.05 * 20.0) / 100.0, rel=0.15)
     assert apart["current"] == pytest.approx(wrong / 0.05, rel=0.25)
@@ -34,7 +34,7 @@ def test_models_that_differ_in_friction_differ_by_its_effect_on_current_and_angl
 def test_a_stroke_that_is_none_is_refused(value: tuple[float, ...], name: str) -> None:
     drive = sw.load("position-drive")
     with pytest.raises(ValueError, match=f"{name} = "):
-        sw.strokes_apart(drive, drive, value)
+        sw.analysis.strokes_apart(drive, drive, value)
 
 
 @pytest.mark.parametrize(
@@ -42,4 +42,4 @@ def test_a_stroke_that_is_none_is_refused(value: tuple[float, ...], name: str) -
 )
 def test_a_limit_lies_where_the_excess_first_becomes_positive(excess: list[float], place: float) -> None:
     columns = {"stroke": [1.0, 2.0, 3.0, 4.0], "output_angle": np.array(excess) + 5.0}
-    assert sw.stroke_within(sw.Recording(columns, dict.fromkeys(columns, "rad")), 5.0) == place
+    assert sw.analysis.stroke_within(sw.Recording(columns, dict.fromkeys(columns, "rad")), 5.0) == place

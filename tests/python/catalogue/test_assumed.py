@@ -7,8 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from tests.python.catalogue.makers import (
     ACCURACY,

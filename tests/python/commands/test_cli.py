@@ -88,7 +88,7 @@ def test_what_a_file_holds_reaches_no_terminal_as_it_is(tmp_path: Path, hostile:
         assert result.returncode == 2
         assert all(line.isprintable() for line in result.stderr.splitlines())
         assert len(result.stderr) < 2000
-    refused(tmp_path, ["models", hostile], "there is no model")
+    refused(tmp_path, ["list", "models", hostile], "none of the models")
 
 
 def test_a_truncated_parquet_file_is_refused(tmp_path: Path) -> None:
@@ -154,15 +154,15 @@ def test_an_unwritable_folder_is_refused(tmp_path: Path) -> None:
 
 
 def test_gears_lists_the_catalogue(tmp_path: Path) -> None:
-    result = strainwave("gears", "hfuc-25", folder=tmp_path)
+    result = strainwave("list", "gears", "hfuc-25", folder=tmp_path)
     assert result.returncode == 0
     assert "hfuc-25-100" in result.stdout.split()
 
 
 def test_gears_that_the_catalogue_does_not_have_are_refused_with_those_near(tmp_path: Path) -> None:
     none = 'none of the gears that come with the package has "hfuc-25-101" in its name'
-    refused(tmp_path, ["gears", "hfuc-25-101"], none, "hfuc-25-100")
-    refused(tmp_path, ["gears", "nonsense"], '"nonsense"', "`strainwave gears` lists all")
+    refused(tmp_path, ["list", "gears", "hfuc-25-101"], none, "hfuc-25-100")
+    refused(tmp_path, ["list", "gears", "nonsense"], '"nonsense"', "`strainwave list gears` lists all")
 
 
 def test_the_version_is_that_of_the_package(tmp_path: Path) -> None:
@@ -173,7 +173,7 @@ def test_the_version_is_that_of_the_package(tmp_path: Path) -> None:
 
 def test_a_terminal_that_lacks_letters_is_no_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gear_set, "catalogue", lambda of: ("größe-100",))
-    monkeypatch.setattr(sys, "argv", ["strainwave", "gears"])
+    monkeypatch.setattr(sys, "argv", ["strainwave", "list", "gears"])
     terminal = TextIOWrapper(BytesIO(), encoding="ascii")
     with redirect_stdout(terminal), pytest.raises(SystemExit) as end:
         main()
@@ -193,7 +193,7 @@ def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: 
 
 
 @pytest.mark.slow("commands")
-@pytest.mark.parametrize("verb", [("gears",), ("models",), ("--help",)])
+@pytest.mark.parametrize("verb", [("list", "gears"), ("list", "models"), ("--help",)])
 def test_a_reader_that_has_seen_enough_is_no_failure(verb: tuple[str, ...]) -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -208,7 +208,7 @@ def test_output_that_is_lost_is_told_and_does_not_turn_success_into_failure() ->
     if not Path("/dev/full").exists():
         pytest.skip("this system has no /dev/full")
     with open("/dev/full", "wb") as full:
-        process = start("gears", stdout=full)
+        process = start("list", "gears", stdout=full)
     _, wrong = process.communicate(timeout=60)
     assert (process.returncode, wrong) == (0, b"strainwave: the output cannot be printed: No space left on device\n")
 
@@ -309,7 +309,7 @@ def test_a_full_disk_leaves_neither_files_nor_folders(tmp_path: Path, monkeypatc
 
 
 def test_every_model_is_listed_with_its_family_and_what_it_is(tmp_path: Path) -> None:
-    families = strainwave("models", folder=tmp_path).stdout.split("\n")
+    families = strainwave("list", "models", folder=tmp_path).stdout.split("\n")
     for family, members in _core.families.items():
         start = families.index(family) + 1
         listed = [line.split(maxsplit=1) for line in families[start : start + len(members)]]
@@ -320,13 +320,13 @@ def test_every_model_is_listed_with_its_family_and_what_it_is(tmp_path: Path) ->
 
 
 def test_a_model_is_described_in_full(tmp_path: Path) -> None:
-    said = strainwave("models", "lugre", folder=tmp_path).stdout
+    said = strainwave("show", "lugre", folder=tmp_path).stdout
     for field in sw.friction.LuGre.fields:
         assert f"{field['name']}: {field['doc']}" in said
 
 
 def test_a_model_that_does_not_exist_is_refused_with_those_that_do(tmp_path: Path) -> None:
-    refused(tmp_path, ["models", "lugree"], "there is no model lugree", "near to it is lugre", "strainwave models lists all")
+    refused(tmp_path, ["show", "lugree"], 'no set "lugree"', "models near it: lugre")
 
 
 @pytest.mark.slow("commands")
@@ -355,7 +355,7 @@ def test_a_failed_check_is_printed_first_and_no_gear_is_written_until_it_is_acce
 def test_rank_prints_failed_checks_first_and_ends_in_3_as_identify_does(tmp_path: Path) -> None:
     rows = "".join(f"{speed},{817.0 * (0.05 + 3e-4 * speed)}\n" for speed in np.geomspace(1.0, 300.0, 12))
     (tmp_path / "table.csv").write_text(f"Speed [rad/s],Torque [N.m]\n{rows}")
-    failed = strainwave("rank", "hfuc-20-80", "table.csv", folder=tmp_path)
+    failed = strainwave("identify", "--rank", "hfuc-20-80", "table.csv", folder=tmp_path)
     assert failed.returncode == 3
     assert failed.stdout.startswith("FAILED: table.csv: its friction is ")
     assert "Coulomb and viscous" in failed.stdout, "the models are printed all the same"
@@ -371,7 +371,7 @@ def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
     assert "columns not used: room" in result.stdout
 
 
-@pytest.mark.parametrize("verb", ["identify", "predict", "rank", "orders"])
+@pytest.mark.parametrize("verb", ["identify", "predict", "orders"])
 def test_the_help_of_a_kind_names_every_kind(verb: str, tmp_path: Path) -> None:
     shown = " ".join(strainwave(verb, "--help", folder=tmp_path).stdout.split())
     assert f"Kind of files that may be of two kinds: {', '.join(KINDS)}." in shown
@@ -380,5 +380,5 @@ def test_the_help_of_a_kind_names_every_kind(verb: str, tmp_path: Path) -> None:
 def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:
     result = strainwave(folder=tmp_path)
     assert (result.returncode, result.stdout) == (0, strainwave("--help", folder=tmp_path).stdout)
-    for verb in ("identify", "demo", "simulate", "compare", "show", "gears", "drives", "models"):
+    for verb in ("identify", "demo", "simulate", "compare", "show", "list"):
         assert f"\n  {verb} " in result.stdout

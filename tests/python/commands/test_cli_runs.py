@@ -56,7 +56,7 @@ def test_a_drive_runs_through_a_scenario_as_in_python(kind: str, folder: Path) -
     result = strainwave(*words, folder=folder)
     assert (result.returncode, result.stderr) == (0, "")
     run = sw.Recording.read(folder / f"run.{kind}")
-    expected = sw.ScenarioFile.read(folder / "ramp.toml", JOINT).simulate(JOINT.drive, sample=2e-3)
+    expected = sw.simulation.ScenarioFile.read(folder / "ramp.toml", JOINT).simulate(JOINT.drive, sample=2e-3)
     assert all(np.array_equal(run[name], expected[name]) for name in expected.names)
     assert run.title == "CSG-25-100: Ramp and push"
     lines = result.stdout.splitlines()
@@ -153,7 +153,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["simulate", "joint.toml", "--scenario", "mine.toml"], ('mine.toml "kinematics" is not known; there are name, note',)),
         (["simulate", "joint.toml", "--scenario", "a.csv"], ("a.csv has no column command; it has time, torque",)),
         (["simulate", "mine.toml", "--scenario", "ramp.toml"], ("mine has no [motor] and no [load]",)),
-        (["simulate", "position-driv", "--scenario", "ramp.toml"], ('"position-driv"', "`strainwave drives`")),
+        (["simulate", "position-driv", "--scenario", "ramp.toml"], ('"position-driv"', "`strainwave list drives`")),
         (["simulate", "none.toml", "--scenario", "ramp.toml"], ("none.toml cannot be read",)),
         ([*SIMULATE, "more"], ("unexpected extra argument", "more")),
         ([*SIMULATE, "--dtt", "1"], ("No such option: --dtt",)),
@@ -200,7 +200,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["show", "nothing"], ('no set "nothing"',)),
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),
         (["show", "a.csv"], ("a.csv holds measurements",)),
-        (["drives", "nonsense"], ('has "nonsense" in its name', "`strainwave drives` lists all")),
+        (["list", "drives", "nonsense"], ('has "nonsense" in its name', "`strainwave list drives` lists all")),
         (["simulat"], ("No such command 'simulat'", "simulate", "see strainwave --help")),
         (["--bogus"], ("No such option: --bogus",)),
     ],
@@ -231,7 +231,7 @@ def test_memory_that_is_not_there_is_told_in_one_line(folder: Path, monkeypatch:
     def full(*_: object, **__: object) -> None:
         raise MemoryError("2e+09 samples take 16 GB, more memory than there is; sample less often")
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", full)
     refused(folder, SIMULATE, "2e+09 samples take 16 GB", "sample less often")
 
 
@@ -239,7 +239,7 @@ def test_memory_that_python_lacks_is_told_in_words(folder: Path, monkeypatch: py
     def full(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", full)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", full)
     refused(folder, SIMULATE, "this takes more memory than there is")
 
 
@@ -250,7 +250,7 @@ def test_arithmetic_that_no_bound_foresaw_is_told_in_one_line(
     def overflowing(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(sw.ScenarioFile, "simulate", overflowing)
+    monkeypatch.setattr(sw.simulation.ScenarioFile, "simulate", overflowing)
     refused(folder, SIMULATE, f"a number is too large or too small to compute with: {error}")
 
 
@@ -293,10 +293,10 @@ def test_a_drive_is_shown_with_every_number(folder: Path) -> None:
 
 
 def test_drives_are_listed_with_what_they_are(tmp_path: Path) -> None:
-    listed = strainwave("drives", folder=tmp_path).stdout.splitlines()
+    listed = strainwave("list", "drives", folder=tmp_path).stdout.splitlines()
     assert [line.split()[0] for line in listed] == sw.catalogue("drives")
     assert listed[0].split(maxsplit=1)[1] == sw.GearSet.read(sw.catalogue("drives")[0]).name
-    assert strainwave("drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
+    assert strainwave("list", "drives", "position-drive", folder=tmp_path).stdout.startswith("position-drive ")
 
 
 @pytest.mark.slow("commands")

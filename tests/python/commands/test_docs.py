@@ -57,10 +57,22 @@ def test_without_a_browser_the_address_is_named(opened: list[str], tmp_path: Pat
 def test_a_clone_has_what_it_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(docs, "_package", lambda: tmp_path / "python" / "strainwave")
     refused(tmp_path, ["docs"], "the documentation is not installed", "python3 dev.py docs")
-    page = tmp_path / "out" / "docs" / "index.html"
-    page.parent.mkdir(parents=True)
+    for page in (tmp_path / "docs" / "index.md", tmp_path / "out" / "docs" / "index.html"):
+        page.parent.mkdir(parents=True)
+        page.touch()
+        assert strainwave("docs", "--path", folder=tmp_path).stdout == f"{page}\n"
+
+
+def test_a_clone_that_built_nothing_has_the_sources_and_says_how_to_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(docs, "_package", lambda: tmp_path / "python" / "strainwave")
+    (page := tmp_path / "docs" / "how-to" / "fit.md").parent.mkdir(parents=True)
     page.touch()
-    assert strainwave("docs", "--path", folder=tmp_path).stdout == f"{page}\n"
+    (tmp_path / "docs" / "index.md").touch()
+    shown = strainwave("docs", "--path", "fit", folder=tmp_path)
+    assert (shown.stdout, "python3 dev.py docs" in shown.stderr) == (f"{page}\n", True)
+    refused(tmp_path, ["docs", "friction"], 'no page of this clone is named "friction"', "python3 dev.py docs")
 
 
 def test_the_guide_for_coding_agents_is_plain_text(tmp_path: Path) -> None:

@@ -107,6 +107,13 @@ FILES: dict[str, Callable[[Path], str]] = {
     "side of a torque": lambda folder: written(
         folder / "a.csv", "t [s],motor_angle [rad],joint_angle [rad],moment [Nm]", TIME, RATIO * ANGLE, ANGLE, TORQUE
     ),
+    "side of a table": lambda folder: written(folder / "a.csv", "speed [rpm],torque [N.m]", 0.2 * RPM, FRICTION / 100.0),
+    "side of a torque by its size": lambda folder: written(
+        folder / "a.csv", "t [s],motor_angle,tau [Nm]", TIME, 30.0 * ANGLE, TORQUE / RATIO - 0.2 * np.sin(ANGLE)
+    ),
+    "unit and side of an angle": lambda folder: written(
+        folder / "a.csv", "t [s],position,torque", TIME, 57.0 * ANGLE, TORQUE - 20.0 * np.sin(ANGLE)
+    ),
     "torques": lambda folder: written(
         folder / "a.csv", "t [s],q [rad],tau_left [Nm],tau_right [Nm]", TIME, ANGLE, TORQUE, 0.9 * TORQUE
     ),
@@ -123,15 +130,52 @@ def first_command(name: str, folder: Path) -> list[str]:
     return ["identify", "csg-20-100", *FILES[name](folder).split()]
 
 
-@pytest.mark.slow("commands")
-@pytest.mark.parametrize("name", FILES)
-def test_every_command_of_a_question_works_on_that_file(tmp_path: Path, name: str) -> None:
-    command = first_command(name, tmp_path)
-    found = outcomes(command, tmp_path)
+def led(command: list[str], folder: Path) -> None:
+    """Every command that a command's question prints, and those of the next question, has a result."""
+    found = outcomes(command, folder)
     assert found[0][0] != shlex.join(command), f"no question: {found}"
     for words, result in found:
         assert result.returncode in (0, 3) or "record" in result.stderr, f"{words}: {result.stderr}"
     assert any(result.returncode in (0, 3) for _, result in found)
+
+
+@pytest.mark.slow("commands")
+@pytest.mark.parametrize("name", FILES)
+def test_every_command_of_a_question_works_on_that_file(tmp_path: Path, name: str) -> None:
+    led(first_command(name, tmp_path), tmp_path)
+
+
+IN_CURRENT = "t [s],q [rad],current [A]"
+
+
+def predicted(folder: Path, header: str, *columns: np.ndarray) -> list[str]:
+    """Predict a file by a gear of which the torque at the joint was recorded, so that no torque constant is known."""
+    log = written(folder / "log.csv", "t [s],q [rad],joint_torque [Nm]", TIME, ANGLE, TORQUE)
+    assert strainwave("identify", "csg-20-100", log, "--out", "saved", folder=folder).returncode == 0
+    return ["predict", "saved/gear.toml", written(folder / "later.csv", header, *columns)]
+
+
+OTHER_VERBS: dict[str, Callable[[Path], list[str]]] = {
+    "predict a log in A": lambda folder: predicted(folder, IN_CURRENT, TIME, ANGLE, TORQUE / 9.85),
+    "predict a table in A": lambda folder: predicted(folder, "speed [rpm],current [A]", RPM, FRICTION / 100.0),
+    "rank a table in A": lambda folder: [
+        "rank", "csg-20-100", written(folder / "a.csv", "speed [rpm],current [A]", RPM, FRICTION / 100.0)
+    ],
+    "orders of a matrix": lambda folder: [
+        "orders", written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE)
+    ],
+    "diagnose a matrix": lambda folder: [
+        "diagnose", written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE)
+    ],
+    "orders of two joints": lambda folder: ["orders", two_joints(folder)],
+    "diagnose two joints": lambda folder: ["diagnose", two_joints(folder)],
+}  # fmt: skip
+
+
+@pytest.mark.slow("commands")
+@pytest.mark.parametrize("name", OTHER_VERBS)
+def test_every_command_of_a_question_of_another_verb_works_on_that_file(tmp_path: Path, name: str) -> None:
+    led(OTHER_VERBS[name](tmp_path), tmp_path)
 
 
 def asked(name: str, folder: Path) -> Result:

@@ -45,7 +45,7 @@ def children(process: int) -> list[int]:
 
 def start(plan: Path, folder: Path) -> subprocess.Popen[bytes]:
     flags = ["-S"] if sys.flags.no_site else []
-    command = [sys.executable, *flags, "-m", "strainwave", "dataset", f"{plan}", "--out", f"{folder}", "--workers", "2"]
+    command = [sys.executable, *flags, "-m", "strainwave", "dataset", "make", f"{plan}", "--out", f"{folder}", "--workers", "2"]
     return subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE)
 
 
@@ -233,7 +233,7 @@ def test_a_slurm_array_makes_an_equal_data_set(whole: tuple[Path, Path], tmp_pat
 
 def test_the_estimate_is_shown_without_a_data_set(tmp_path: Path) -> None:
     plan = write(tmp_path)
-    result = strainwave("dataset", plan, "--dry-run", "--workers", 2, folder=tmp_path)
+    result = strainwave("dataset", "estimate", plan, "--workers", 2, folder=tmp_path)
     assert result.returncode == 0, result.stderr
     lines = dict(line.split(maxsplit=1) for line in result.stdout.splitlines()[1:])
     assert lines["members"] == "48"
@@ -245,7 +245,7 @@ def test_the_estimate_is_shown_without_a_data_set(tmp_path: Path) -> None:
 
 def test_one_member_is_made_alone(tmp_path: Path) -> None:
     plan = write(tmp_path)
-    result = strainwave("dataset", plan, "--member", 17, "--out", "one.parquet", folder=tmp_path)
+    result = strainwave("dataset", "member", plan, 17, "--out", "one.parquet", folder=tmp_path)
     assert result.returncode == 0, result.stderr
     assert "member  17\nunit  5\n" in result.stdout
     (series,) = pandas.read_parquet(tmp_path / "one.parquet")["current"]
@@ -255,14 +255,14 @@ def test_one_member_is_made_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ([], "give a plan"),
-        (["plan.toml"], "--out is missing"),
-        (["none.toml", "--out", "x"], "none.toml: cannot be read"),
-        (["plan.toml", "--member", "48"], "must lie in [0, 47]"),
-        (["plan.toml", "--out", "x", "--runner", "cloud"], "must be one of local, dask, slurm"),
-        (["plan.toml", "--out", "x", "--workers", "0"], "--workers 0 must be at least 1"),
-        (["--work", "none"], "has no plan.toml"),
-        (["--work", ".", "--part", "4/4"], "write it as --part 0/4"),
+        (["make"], "Missing argument 'plan'"),
+        (["make", "plan.toml"], "Missing option '--out'"),
+        (["make", "none.toml", "--out", "x"], "none.toml: cannot be read"),
+        (["member", "plan.toml", "48"], "must lie in [0, 47]"),
+        (["make", "plan.toml", "--out", "x", "--runner", "cloud"], "must be one of local, dask, slurm"),
+        (["make", "plan.toml", "--out", "x", "--workers", "0"], "--workers 0 must be at least 1"),
+        (["work", "none"], "has no plan.toml"),
+        (["work", ".", "--part", "4/4"], "write it as --part 0/4"),
     ],
 )
 def test_a_wrong_command_is_refused(tmp_path: Path, arguments: list[str], said: str) -> None:
@@ -284,7 +284,7 @@ def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Pat
     ) as cluster:
         killed: set[int] = set()
 
-        def kill(line: str) -> None:
+        def kill(line: str, share: float) -> None:
             lines.append(line)
             if len(killed) < 2:
                 alive = [nanny.pid for nanny in cluster.workers.values() if nanny.pid]  # none while a nanny starts another

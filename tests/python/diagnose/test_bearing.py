@@ -52,7 +52,7 @@ def test_the_orders_are_those_of_the_fault() -> None:
     for element, order in zip(("outer_ring", "inner_ring", "ball", "cage"), orders.values(), strict=True):
         assert order == changes_of(JOINT.drive, BEARING.replace(element=element))[0].order
     ratio = float(JOINT.gear.kinematics.ratio)
-    known = sw.bearing_orders(23, 4.763e-3, 46e-3, outer_speed=1.0 / ratio)  # the circular spline is fixed
+    known = sw.orders.bearing_orders(23, 4.763e-3, 46e-3, outer_speed=1.0 / ratio)  # the circular spline is fixed
     assert orders["bearing, outer ring"] == pytest.approx(known.outer_ring, rel=1e-12)
     two = bearing_orders([BEARING, BEARING], JOINT.gear.kinematics)
     assert "bearing 2, outer ring" in two
@@ -79,7 +79,7 @@ def test_the_command_names_the_element(records: dict[str, sw.Recording], tmp_pat
     JOINT.save(tmp_path / "joint.toml")
     records["bearing"].to_csv(tmp_path / "bearing.csv")
     options = ("--gear", "joint.toml", "--bearing", "23,4.763,46", "--out", "out")
-    done = strainwave("diagnose", "bearing.csv", *options, folder=tmp_path)
+    done = strainwave("diagnose", "joint", "bearing.csv", *options, folder=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "(bearing, outer ring): above noise" in " ".join(done.stdout.split())
     (joint,) = json.loads((tmp_path / "out" / "results.json").read_text())["joints"]
@@ -109,8 +109,4 @@ def test_options_that_do_not_fit_are_refused_in_one_line(
     options: tuple[str, ...], reason: str, tmp_path: Path, records: dict[str, sw.Recording]
 ) -> None:
     records["later"].to_csv(tmp_path / "later.csv")
-    refused(tmp_path, ("diagnose", "later.csv", *options), reason)
-
-
-def test_a_plan_has_no_recording_whose_orders_a_bearing_names(tmp_path: Path) -> None:
-    refused(tmp_path, ("diagnose", "--plan", "--bearing", "23,4.763,46"), "does not use --bearing")
+    refused(tmp_path, ("diagnose", "joint", "later.csv", *options), reason)

@@ -1,4 +1,4 @@
-"""The command `strainwave diagnose`: from files to verdicts, a page and numbers, or one line that says what is missing."""
+"""The command `strainwave diagnose joint`: from files to verdicts, a page and numbers, or one line of what is missing."""
 
 from __future__ import annotations
 
@@ -52,7 +52,9 @@ def results(folder: Path, name: str) -> dict[str, dict[str, object]]:
 
 @pytest.mark.whole_path("diagnose")
 def test_a_change_is_an_alarm_with_its_cause_and_a_later_healthy_day_is_none(folder: Path) -> None:
-    done = strainwave("diagnose", "later.csv", "crack.csv", *JOINT, "--baseline", "healthy", "--out", "a", folder=folder)
+    done = strainwave(
+        "diagnose", "joint", "later.csv", "crack.csv", *JOINT, "--baseline", "healthy", "--out", "a", folder=folder
+    )
     assert done.returncode == 3, done.stderr
     found = results(folder, "a")
     assert found["later.csv"]["verdict"] == "no change found"
@@ -71,14 +73,14 @@ def test_a_change_is_an_alarm_with_its_cause_and_a_later_healthy_day_is_none(fol
 
 @pytest.mark.slow("diagnose")
 def test_a_quiet_recording_ends_with_exit_code_0_and_states_the_smallest_change(folder: Path) -> None:
-    done = strainwave("diagnose", "later.csv", *JOINT, "--baseline", "healthy", "--out", "b", folder=folder)
+    done = strainwave("diagnose", "joint", "later.csv", *JOINT, "--baseline", "healthy", "--out", "b", folder=folder)
     assert done.returncode == 0, done.stderr
     assert "smallest change that would be an alarm" in " ".join(done.stdout.split())
     assert "healthy:" not in done.stdout
 
 
 def test_without_a_baseline_lines_stand_against_noise_and_expected_values(folder: Path) -> None:
-    done = strainwave("diagnose", "later.csv", *JOINT, "--out", "c", folder=folder)
+    done = strainwave("diagnose", "joint", "later.csv", *JOINT, "--out", "c", folder=folder)
     assert done.returncode == 0, done.stderr
     found = results(folder, "c")["later.csv"]
     assert found["verdict"] == "lines found"
@@ -90,7 +92,7 @@ def test_without_a_baseline_lines_stand_against_noise_and_expected_values(folder
 
 
 def test_a_run_without_load_is_insensitive_and_not_healthy(folder: Path) -> None:
-    done = strainwave("diagnose", "idle.csv", *JOINT, "--out", "d", folder=folder)
+    done = strainwave("diagnose", "joint", "idle.csv", *JOINT, "--out", "d", folder=folder)
     found = results(folder, "d")["idle.csv"]
     assert found["verdict"] == "insensitive"
     assert "arc minutes would be seen at this load" in found["reason"]  # type: ignore[operator]
@@ -99,17 +101,17 @@ def test_a_run_without_load_is_insensitive_and_not_healthy(folder: Path) -> None
 
 @pytest.mark.slow("diagnose")
 def test_a_recording_at_rest_is_refused_beside_those_that_are_used(folder: Path) -> None:
-    done = strainwave("diagnose", "rest.csv", "later.csv", *JOINT, "--out", "e", folder=folder)
+    done = strainwave("diagnose", "joint", "rest.csv", "later.csv", *JOINT, "--out", "e", folder=folder)
     assert done.returncode == 0, done.stderr
     assert "rest.csv: refused: at rest: input_angle moves by 0 rad" in done.stdout
     assert "<li>rest.csv: at rest" in (folder / "e" / "report.html").read_text()
-    refused(folder, ("diagnose", "rest.csv", *JOINT), " rest.csv: at rest")
+    refused(folder, ("diagnose", "joint", "rest.csv", *JOINT), " rest.csv: at rest")
     with pytest.raises(AssertionError):
-        refused(folder, ("diagnose", "rest.csv", *JOINT), "rest.csv: rest.csv")
+        refused(folder, ("diagnose", "joint", "rest.csv", *JOINT), "rest.csv: rest.csv")
 
 
 def test_without_a_ratio_the_page_states_that_the_amplitude_per_error_is_not_known(folder: Path) -> None:
-    done = strainwave("diagnose", "later.csv", "--out", "i", folder=folder)
+    done = strainwave("diagnose", "joint", "later.csv", "--out", "i", folder=folder)
     assert done.returncode == 0, done.stderr
     page = " ".join((folder / "i" / "report.html").read_text().split())
     assert "is detected with probability 0.9. It is not known without the ratio of the gear." in page
@@ -121,7 +123,7 @@ def test_recordings_of_one_name_in_several_folders_have_hours_and_reasons_of_the
         (folder / f"d{day}").mkdir()
         (folder / f"d{day}" / "run.csv").write_bytes((folder / name).read_bytes())
     names = [f"d{day}/run.csv" for day in range(3)]
-    done = strainwave("diagnose", *names, *JOINT, "--hours", "0,100,200", "--out", "j", folder=folder)
+    done = strainwave("diagnose", "joint", *names, *JOINT, "--hours", "0,100,200", "--out", "j", folder=folder)
     assert done.returncode == 0, done.stderr
     assert "d1/run.csv: refused: at rest" in done.stdout
     (joint,) = json.loads((folder / "j" / "results.json").read_text())["joints"]
@@ -133,13 +135,13 @@ def test_recordings_of_one_name_in_several_folders_have_hours_and_reasons_of_the
 def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
     names = [f"wear-{k}.csv" for k in range(6)]
     options = ("--hours", "0,100,200,300,400,500", "--threshold", "20", "--baseline", "healthy", "--out", "f")
-    done = strainwave("diagnose", *names, *JOINT, *options, folder=folder)
+    done = strainwave("diagnose", "joint", *names, *JOINT, *options, folder=folder)
     assert "remaining life by the trend" in done.stdout, done.stderr
     (joint,) = json.loads((folder / "f" / "results.json").read_text())["joints"]
     assert joint["trend"]["slope"] > 0.0
     assert joint["trend"]["low"] <= joint["trend"]["remaining"]
     few = strainwave(
-        "diagnose", *names[:3], *JOINT, "--hours", "0,1,2", "--threshold", "20", "--baseline", "healthy", folder=folder
+        "diagnose", "joint", *names[:3], *JOINT, "--hours", "0,1,2", "--threshold", "20", "--baseline", "healthy", folder=folder
     )
     assert "no trend: a trend needs 5 compared recordings or more; there are 3" in " ".join(few.stdout.split())
 
@@ -149,14 +151,7 @@ def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
     [
         (("later.csv", "--hours", "1,2"), "--hours has 2 numbers for 1 recordings"),
         (("later.csv", "--threshold", "2"), "--threshold needs the hours of operation"),
-        (("later.csv", "--speed", "3"), "--speed belongs to a planned recording: add --plan"),
-        (("--plan", *JOINT), "--plan needs --speed"),
-        (("--plan",), "--plan needs --gear with a drive"),
-        ((), "no recording is given"),
-        (("later.csv", "--plan", *JOINT), "--plan simulates the drive --gear and does not use recordings: leave it out"),
-        (("--plan", *JOINT, "--baseline", "healthy"), "does not use --baseline"),
-        (("--plan", *JOINT, "--column", "current=I"), "does not use --column"),
-        (("--plan", *JOINT, "--joint", "all"), "does not use --joint"),
+        ((), "Missing argument 'FILE…'"),
         (("later.csv", "--hours", "a"), '--hours a: "a" is no number'),
         (("later.csv", "--hours", "-5"), "--hours -5: hours = -5.0 h must lie in [0, inf)"),
         (("later.csv", "--threshold", "-2", "--hours", "1"), "--threshold = -2.0 must lie in (0, inf)"),
@@ -170,17 +165,23 @@ def test_a_growing_line_has_a_trend_with_an_interval(folder: Path) -> None:
     ],
 )
 def test_options_that_do_not_fit_are_refused_in_one_line(folder: Path, words: tuple[str, ...], reason: str) -> None:
-    refused(folder, ("diagnose", *words), reason)
+    refused(folder, ("diagnose", "joint", *words), reason)
 
 
 @pytest.mark.slow("diagnose")
 def test_a_record_that_is_no_ramp_has_a_note_and_no_misalignment(folder: Path) -> None:
     drive = ("--gear", "tilt-actuator-lumped", "--geometry", "--out", "g")
-    done = strainwave("diagnose", "later.csv", *drive, folder=folder)
+    done = strainwave("diagnose", "joint", "later.csv", *drive, folder=folder)
     assert done.returncode == 0, done.stderr
     (found,) = results(folder, "g").values()
     assert found["misalignment"] is None
     assert "no misalignment is estimated" in done.stdout
+
+
+def test_a_limit_needs_a_drive_and_its_record(folder: Path) -> None:
+    refused(folder, ("diagnose", "limit", "tilt-actuator"), "Missing option '--speed'")
+    record = ("--speed", "10", "--duration", "20", "--noise", "0.05")
+    refused(folder, ("diagnose", "limit", "csg-20-100", *record), "has no [motor]", "list drives")
 
 
 @pytest.mark.slow("diagnose")
@@ -192,9 +193,9 @@ def test_a_plan_prints_the_limit_of_each_order(folder: Path) -> None:
         source="a test",
     )
     drive.save(folder / "drive.toml")
-    options = ("--speed", "10", "--duration", "20", "--noise", "0.05", "--sample-rate", "500", "--order", "2")
-    loaded = strainwave("diagnose", "--plan", "--gear", "drive.toml", *options, "--load", "20", "--out", "g", folder=folder)
-    idle = strainwave("diagnose", "--plan", "--gear", "drive.toml", *options, "--out", "h", folder=folder)
+    options = ("--speed", "10", "--duration", "20", "--noise", "0.05", "--rate", "500", "--order", "2")
+    loaded = strainwave("diagnose", "limit", "drive.toml", *options, "--torque", "20", "--out", "g", folder=folder)
+    idle = strainwave("diagnose", "limit", "drive.toml", *options, "--out", "h", folder=folder)
     limits = [json.loads((folder / name / "results.json").read_text())["limits"][0]["arcminutes"] for name in ("g", "h")]
     assert limits[0] < 1.0 < limits[1]
     assert "(insensitive)" in idle.stdout

@@ -1,4 +1,4 @@
-"""`strainwave misalignment`: what it prints and writes, and what it refuses."""
+"""`strainwave diagnose misalignment`: what it prints and writes, and what it refuses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LUMPED = "tilt-actuator-lumped"
 
 @pytest.mark.slow("diagnose")
 def test_the_command_prints_the_levels_and_writes_the_sweeps(tmp_path: Path) -> None:
-    result = strainwave("misalignment", LUMPED, "--stroke", "20", "--time", "1", "--out", "found", folder=tmp_path)
+    result = strainwave("diagnose", "misalignment", LUMPED, "--stroke", "20", "--time", "1", "--out", "found", folder=tmp_path)
     assert result.returncode == 0, result.stderr
     names = {f"levels-{combine}-{loop}.csv" for combine in sw.diagnose.COMBINE for loop in sw.diagnose.LOOPS}
     assert {path.name for path in (tmp_path / "found").iterdir()} == names
@@ -38,4 +38,4 @@ def test_the_command_prints_the_levels_and_writes_the_sweeps(tmp_path: Path) -> 
     ],
 )
 def test_wrong_input_is_refused_in_one_line(words: tuple[str, ...], expected: str, tmp_path: Path) -> None:
-    refused(tmp_path, ["misalignment", *words], expected)
+    refused(tmp_path, ["diagnose", "misalignment", *words], expected)

@@ -73,7 +73,7 @@ def test_the_limit_of_aliasing_is_that_of_the_blind_search_at_the_usual_speed() 
         )
         if is_used:
             run = usable(made, "log.csv")
-            assert sw.ripple(run.recording, run.column, angle=run.angle, side="input").highest > 2.0
+            assert sw.orders.ripple(run.recording, run.column, angle=run.angle, side="input").highest > 2.0
         else:
             with pytest.raises(ValueError, match=r"passes at 42 Hz .* the limit is 40 Hz"):
                 usable(made, "log.csv")

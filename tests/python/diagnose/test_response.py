@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.diagnose.detection_limit import detection_limit
 from strainwave.diagnose.diagnosis import Question, RunDiagnosis, diagnosed
 from strainwave.diagnose.refusals import usable
+from strainwave.diagnose.smallest_error import detection_limit
 from strainwave.diagnose.steady_run import COLUMN, SteadyRun
 
 from tests.evidence.detection_limits import signature_drive

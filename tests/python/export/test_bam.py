@@ -5,8 +5,7 @@ from math import exp
 
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.export.bam_parameters import bam, read_bam
 from strainwave.files.gear_set import GearSet
 

@@ -5,8 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.export.elements import GearElements, Spring, friction_losses
 from strainwave.tuning.loss import ExportLoss
 

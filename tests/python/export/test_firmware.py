@@ -63,7 +63,7 @@ DRIVES = {
     "passes": drive(learning=sw.compensation.IterativeLearning(low=-0.1, high=0.1, gain=20.0)),
     "twist": drive(feedforward=FEEDFORWARD, learning=sw.compensation.TwistIdentification(order=[1, 2])),
     "lags": drive(law=sw.control.LeadLag(gain=1.0, lead_numerator=0.03, lead_denominator=0.002, lag_denominator=2.0), motor=DC),
-    "kalman": drive(law=sw.regulator(JOINT, error=1e-3, encoder="input")),
+    "kalman": drive(law=sw.tuning.lqg(JOINT, error=1e-3, encoder="input")),
     "linearised": drive(
         law=sw.control.FeedbackLinearisation(gear=GEAR, load=LOAD, motor_inertia=2e-5, bandwidth=60.0, limit=2.0),
         observer=OBSERVER,

@@ -99,7 +99,7 @@ def test_block_moves_as_simulation(version):
     state = None
     for k in range(CHAINED):
         piece = sw.scenario.table([0.0, COMMUNICATION], command[k : k + 2])
-        part = sw.simulate(drive_of(version), piece, STEP, sample=COMMUNICATION, load_torque=float(load[k]), start=state)
+        part = sw.simulate(drive_of(version), piece, STEP, sample=COMMUNICATION, load_torque=float(load[k]), initial=state)
         state = part.end
         for name, values in chained.items():
             values.append(part[name][-1])

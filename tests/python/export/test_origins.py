@@ -16,7 +16,7 @@ from strainwave.export.exported import ORIGINS_FILE, Exported
 
 JOINT = sw.GearSet.read("robot-joint")
 DAMPING = "gear.damping"
-IDENTIFIED = JOINT.replace(sources={**JOINT.sources, DAMPING: sw.Entry("identified from run--a.csv", uncertainty=1e-6)})
+IDENTIFIED = JOINT.replace(sources={**JOINT.sources, DAMPING: sw.files.Entry("identified from run--a.csv", uncertainty=1e-6)})
 LINE = f"{DAMPING} = {JOINT.gear.damping:.6g} ± 1e-06 N.m.s/rad, identified from run"
 
 

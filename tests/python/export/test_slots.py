@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.integrate import quad
 from strainwave.export import Exported, ExportLoss
 from strainwave.export.slots import MAX_OVER_COMPENSATED_SHARE, SLOTS

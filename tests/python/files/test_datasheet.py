@@ -9,8 +9,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.files import typical_gear as typical
 from strainwave.rig.analysis.catalogue_check import published
 

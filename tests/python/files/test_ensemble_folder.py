@@ -18,8 +18,7 @@ import numpy as np
 import pyarrow
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from pyarrow import parquet
 from strainwave.files import writing
 from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint

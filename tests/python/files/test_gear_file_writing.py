@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, settings, strategies as st
 from strainwave.files.described import optional
 from strainwave.files.entries import Entry, Quantity
 from strainwave.files.gear_set import GearSet, load, save

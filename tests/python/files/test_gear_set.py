@@ -172,7 +172,7 @@ def test_a_source_may_be_named_for_a_number_a_sequence_or_a_part_and_the_longer_
             "x: sources name \\x1b[2J, which is no number or part of the model; near it are "
             "gear.stiffness.k, gear.softening.stiffness_fall, gear.softening.reference_temperature",
         ),
-        ({"gear": "x"}, TypeError, "gear must have a strainwave.Entry, not 'x'"),
+        ({"gear": "x"}, TypeError, "gear must have a strainwave.files.Entry, not 'x'"),
         (3, TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not 3'),
         (np.zeros(2), TypeError, 'sources must be a mapping, as in {"gear.damping": Entry("assumed")}, not array([0., 0.])'),
     ],
@@ -306,7 +306,7 @@ def test_a_set_is_saved_under_its_own_name(tmp_path: Path) -> None:
         (
             lambda: GearSet.read("hfuc-25-100").replace(ratings={"peak_torque": 4.0}),
             TypeError,
-            "peak_torque must have a strainwave.Quantity, not 4.0",
+            "peak_torque must have a strainwave.files.Quantity, not 4.0",
         ),
     ],
 )
@@ -320,7 +320,7 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     with pytest.raises(
         ValueError,
         match=exactly(
-            "bare has no [motor] and no [load]; a drive needs a motor and a load; strainwave drives lists whole drives"
+            "bare has no [motor] and no [load]; a drive needs a motor and a load; strainwave list drives lists whole drives"
         ),
     ):
         _ = bare.drive
@@ -332,7 +332,8 @@ def test_the_drive_needs_motor_and_load_and_runs_in_open_loop_without_control() 
     assert whole.replace(control=None, sources=sources).drive.control == sw.control.OpenLoop(gain=1.0)
     sources = {path: entry for path, entry in sources.items() if not path.startswith("load.")}
     with pytest.raises(
-        ValueError, match=exactly("whole has no [load]; a drive needs a motor and a load; strainwave drives lists whole drives")
+        ValueError,
+        match=exactly("whole has no [load]; a drive needs a motor and a load; strainwave list drives lists whole drives"),
     ):
         _ = whole.replace(control=None, load=None, sources=sources).drive
 

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.files import ratings
 from strainwave.files.entries import Quantity
 from strainwave.files.gear_set import GearSet
@@ -43,7 +42,7 @@ def recorded(**columns: Any) -> sw.Recording:
     return sw.Recording(columns, {name: units[name] for name in columns}, title="test")
 
 
-def checks(gear_set: GearSet, *recordings: sw.Recording) -> dict[str, sw.RatingCheck]:
+def checks(gear_set: GearSet, *recordings: sw.Recording) -> dict[str, sw.files.RatingCheck]:
     return {check.name: check for check in sw.check_ratings(gear_set, *recordings)}
 
 
@@ -153,7 +152,7 @@ def size_20() -> GearSet:
 @pytest.mark.parametrize("simulate", [sw.simulate, sw.simulate_adaptively])
 def test_a_run_of_a_set_warns_of_every_limit_exceeded_and_is_that_of_its_drive(simulate: Any) -> None:
     gear_set, command = size_20(), sw.scenario.step(amplitude=0.2, duration=0.1)
-    with pytest.warns(sw.RatingWarning) as warned:
+    with pytest.warns(sw.files.RatingWarning) as warned:
         run = simulate(gear_set, command)
     exceeded = [check for check in sw.check_ratings(gear_set, run) if check.exceeded]
     assert {"peak_torque", "momentary_torque"} <= {check.name for check in exceeded}
@@ -171,7 +170,7 @@ def test_adaptive_steps_that_stiff_bristles_ask_for_warn_once() -> None:
     )
     stiff = GearSet.of(gear_set.drive.replace(gear=gear_set.gear.replace(friction_input=law)), name="stiff", source="x")
     stiff = stiff.replace(ratings={"peak_torque": gear_set.ratings["peak_torque"]})
-    with pytest.warns(sw.RatingWarning) as warned:
+    with pytest.warns(sw.files.RatingWarning) as warned:
         run = sw.simulate(stiff, sw.scenario.step(amplitude=0.2, duration=0.02))
     assert "adaptive" in run.method
     assert len(warned) == 1
@@ -190,7 +189,7 @@ def test_a_run_with_the_gear_of_a_data_sheet_warns_of_the_limits_of_the_sheet(tm
     gear = sw.load(tmp_path / "sheet.toml")
     drive = sw.Drive(gear=gear, load=sw.loads.Inertia(inertia=1.0))
     held = sw.scenario.constant(0.0, 0.1)
-    with pytest.warns(sw.RatingWarning, match=r"^sheet: peak torque: .* exceeds the limit of 74 N\.m"):
+    with pytest.warns(sw.files.RatingWarning, match=r"^sheet: peak torque: .* exceeds the limit of 74 N\.m"):
         sw.simulate(drive, held, load_torque=165.0)
     sw.simulate(drive, held, load_torque=1.0)  # a warning would be an error
     sw.simulate(drive.replace(gear=gear.replace(damping=1.01 * gear.damping)), held, load_torque=165.0)  # another gear

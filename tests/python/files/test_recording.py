@@ -16,8 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from matplotlib.text import Text
 from strainwave.files.recording import Recording
 
@@ -492,7 +491,7 @@ def test_a_recording_is_taken_by_dict_and_pandas() -> None:
 
     run = Recording({"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}, {"time": "s", "motor speed": "rad/s"})
     assert {name: values.tolist() for name, values in dict(run).items()} == {"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}
-    frame = run.to_pandas()
+    frame = run.to_frame()
     assert frame.attrs["units"] == run.units
     pandas.testing.assert_frame_equal(pandas.DataFrame(run), frame, check_exact=True)
     assert list(run) == [(0.0, 1.0), (0.1, 2.0)]

@@ -10,8 +10,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 from strainwave.files.units import check, convert, counts, is_share, measures
 

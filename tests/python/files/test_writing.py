@@ -15,8 +15,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.files import writing
 from strainwave.files.writing import claiming, making, remove_drafts, replacing, write_all
 

@@ -30,7 +30,7 @@ CURRENT, ANGLE = LOG["current"], LOG.values("input_angle", "rad")
 
 def motor_of(start: sw.GearSet) -> sw.GearSet:
     motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
-    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
+    sources = {f"motor.{each['name']}": sw.files.Entry("measured", uncertainty=0.0) for each in motor.fields}
     return start.replace(motor=motor, sources={**start.sources, **sources})
 
 

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.identification.identify import Identified, identify, with_means
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine, distance, mean_of
@@ -18,8 +17,7 @@ from strainwave.identification.results.file_result import FileEstimate, FileResu
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import QuestionError
 
-from tests.python.identification.candidates.test_motion import RATIO, TRUTH, record
-from tests.python.identification.candidates.test_motion import SPEED as SWING
+from tests.python.identification.candidates.test_motion import RATIO, SPEED as SWING, TRUTH, record
 from tests.support.answers import options_of
 
 SPEED = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0])
@@ -44,7 +42,7 @@ def measured_motor() -> sw.GearSet:
     """A set of which the motor is known well."""
     start = sw.GearSet.read("hfuc-20-80")
     motor = sw.motor.DC(resistance=0.4, torque_constant=CONSTANT, back_emf=CONSTANT, inertia=1e-4 - start.gear.input_inertia)
-    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in motor.fields}
+    sources = {f"motor.{each['name']}": sw.files.Entry("measured", uncertainty=0.0) for each in motor.fields}
     return start.replace(motor=motor, sources={**start.sources, **sources})
 
 
@@ -259,7 +257,7 @@ def test_a_torque_that_was_measured_is_as_sure_as_itself_whatever_the_torque_con
     log_of_torque = kept.with_column("input_torque", CONSTANT * run["current"], "N.m")
     files = {"torque.csv": log_of_torque, "current.csv": run}
     set_there = measured_motor()
-    unsure = sw.Entry("data sheet", uncertainty=0.02 * CONSTANT)
+    unsure = sw.files.Entry("data sheet", uncertainty=0.02 * CONSTANT)
     unsure_set = set_there.replace(sources={**set_there.sources, "motor.torque_constant": unsure})
     common = {}
     for name, recording in files.items():
@@ -275,7 +273,7 @@ def test_a_voltage_of_an_unknown_motor_is_refused_with_what_to_say(tmp_path: Pat
     with pytest.raises(QuestionError) as asked:
         identify("hfuc-20-80", [voltage_log(tmp_path / "log.csv")])
     of_motor = "--constant resistance=NUMBER --constant torque_constant=NUMBER"
-    assert options_of(asked.value) == [of_motor, "--column current=voltage"]
+    assert options_of(asked.value) == [of_motor, "--column current=voltage --unit voltage=A"]
 
 
 @pytest.mark.slow("identification")
@@ -303,10 +301,10 @@ def test_shares_of_regressors_are_found_beside_friction(tmp_path: Path) -> None:
 def test_a_load_is_as_uncertain_as_the_rotor_beside_it(tmp_path: Path) -> None:
     file = log(tmp_path / "log.csv", 7)
     known = measured_motor()
-    of_gear = {"gear.input_inertia": sw.Entry("measured", uncertainty=2e-6)}
+    of_gear = {"gear.input_inertia": sw.files.Entry("measured", uncertainty=2e-6)}
     inertia = [
         next(each.estimate for each in identify(start, [file]).parameters if each.estimate.path == "load.inertia")
-        for start in (known.replace(sources={**known.sources, "gear.input_inertia": sw.Entry("x", uncertainty=0.0)}),
+        for start in (known.replace(sources={**known.sources, "gear.input_inertia": sw.files.Entry("x", uncertainty=0.0)}),
                       known.replace(sources={**known.sources, **of_gear}))
     ]  # fmt: skip
     assert inertia[1].value == inertia[0].value

@@ -51,12 +51,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
-def predicted(folder: Path, name: str) -> sw.Prediction:
+def predicted(folder: Path, name: str) -> sw.identification.Prediction:
     (found,) = sw.predict(folder / "gear.toml", [folder / name], mapping=STATED)
     return found
 
 
-def change(found: sw.Prediction, name: str) -> PartChange:
+def change(found: sw.identification.Prediction, name: str) -> PartChange:
     found_changes: tuple[PartChange, ...] = found.changes
     return next(each for each in found_changes if each.name == name)
 
@@ -138,7 +138,7 @@ def test_a_table_of_friction_is_predicted_by_the_gear_alone() -> None:
 def test_the_uncertainty_of_the_saved_numbers_is_part_of_that_of_a_change() -> None:
     gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
     sure = GearSet.of(gear, name="joint", source="measured")
-    spread = sw.Entry("measured", uncertainty=5e-3)
+    spread = sw.files.Entry("measured", uncertainty=5e-3)
     unsure = sure.replace(
         sources={**sure.sources, "gear.friction_input.coulomb": spread},
         covariance=Covariance(("gear.friction_input.coulomb",), ((2.5e-5,),)),

@@ -115,9 +115,9 @@ def test_members_without_result_say_why_as_on_the_processor() -> None:
     """One is too stiff for the steps, one has no valid numbers together, and others are sound."""
     parameters = {"gear.stiffness.a1": np.array([5e3, 1e14, 4e3]), "motor.inertia": np.array([1e-4, 1e-4, 0.0])}
     parameters["gear.input_inertia"] = np.array([1e-5, 1e-5, 0.0])
-    with pytest.warns(sw.EnsembleWarning):
+    with pytest.warns(sw.simulation.EnsembleWarning):
         found = ensemble("gpu", parameters=parameters)
-    with pytest.warns(sw.EnsembleWarning):
+    with pytest.warns(sw.simulation.EnsembleWarning):
         expected = ensemble("cpu", parameters=parameters)
     assert set(expected.failures) == {1, 2}
     assert found == expected

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave.orders.two_encoders import ErrorOrder
 
@@ -30,11 +29,11 @@ def slow(ratio: float, *, swing: float = 40.0, play: float = 0.0, noise: float =
     return {"time": time, "input_angle": theta, "output_angle": theta / ratio - error - 0.5 * play * sense + scatter}
 
 
-def error_of(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: Any) -> sw.TransmissionError:
+def error_of(columns: dict[str, Array], units: dict[str, str] = UNITS, **options: Any) -> sw.orders.TransmissionError:
     return sw.transmission_error(sw.Recording(columns, units), **options)
 
 
-def order(found: sw.TransmissionError, which: float) -> ErrorOrder:
+def order(found: sw.orders.TransmissionError, which: float) -> ErrorOrder:
     return next(each for each in found.orders if each.order == which and each.shaft == "input")
 
 

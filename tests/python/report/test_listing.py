@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given, settings
-from strainwave import Agreement, Difference, Entry, Quantity, Recording
+from strainwave import Recording
+from strainwave.analysis import Agreement, Difference
+from strainwave.files import Entry, Quantity
 from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table
 
 from tests.support.samples import sample

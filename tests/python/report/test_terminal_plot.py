@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.report.terminal_plot import DOTS, loop_lines
 
 LOOP = np.radians([0.0, -4.6, -58.9, -54.7, 0.0]), np.array([0.36, 0.0, -0.36, 0.0, 0.36])

@@ -9,8 +9,7 @@ import pytest
 import strainwave as sw
 
 from tests.control import by_hand
-from tests.control.discrete import CURRENT, DC, PROMPT, TORQUE
-from tests.control.discrete import drive as linear
+from tests.control.discrete import CURRENT, DC, PROMPT, TORQUE, drive as linear
 from tests.support.reference_drive import DRIVE, STICKING
 
 OPEN = DRIVE.replace(control=sw.control.OpenLoop())
@@ -69,9 +68,9 @@ def test_so_does_any_law_on_any_motor(law: object, motor: object, delay: float) 
 
 def test_it_sees_through_the_sensors_at_its_instants() -> None:
     drive = OPEN.replace(sensors=sw.Sensors(output_angle=sw.sensor.Gain(gain=1.0, offset=0.25)))
-    seen: list[sw.Observation] = []
+    seen: list[sw.simulation.Observation] = []
 
-    def zero(now: sw.Observation) -> float:
+    def zero(now: sw.simulation.Observation) -> float:
         seen.append(now)
         return 0.0
 
@@ -94,7 +93,7 @@ def test_what_is_recorded_is_what_is_asked_for_and_a_run_goes_on() -> None:
     open_loop = sw.simulate(OPEN, sw.scenario.constant(3.0, 0.2))
     assert np.abs(whole["current"] - open_loop["current"]).max() < 1e-12
     assert whole.end.input_speed == pytest.approx(open_loop.end.input_speed, rel=1e-12)
-    further = sw.simulate_controlled(OPEN, lambda seen: 0.0, COMMAND, period=1e-3, start=whole.end)
+    further = sw.simulate_controlled(OPEN, lambda seen: 0.0, COMMAND, period=1e-3, initial=whole.end)
     assert further["input_speed"][0] == whole.end.input_speed
 
 

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from tests.support.geared import RATIO, K, geared
 from tests.support.reference_drive import DRIVE
@@ -125,7 +124,7 @@ def test_members_begin_where_each_alone_does() -> None:
 def test_derivatives_know_that_the_beginning_moves() -> None:
     paths = ["gear.stiffness.a1", "load.gravity_torque", "gear.damping"]
     initial = {"output_angle": 0.5, "output_speed": 0.2}
-    found = sw.derivatives(DRIVE, SHORT, paths, sample=1e-4, initial=initial)
+    found = sw.analysis.derivatives(DRIVE, SHORT, paths, sample=1e-4, initial=initial)
     for path in paths:
         value = float(_value(DRIVE, path))
         near = [
@@ -161,17 +160,12 @@ def test_what_is_no_beginning_is_refused(initial: Any, kind: type[Exception], me
         sw.simulate(geared(motor=sw.motor.DC()), SHORT, initial=initial)
 
 
-def test_a_start_and_an_initial_state_exclude_each_other() -> None:
-    with pytest.raises(ValueError, match="give one of them"):
-        sw.simulate(DRIVE, SHORT, start=DRIVE.rest(), initial={})
-
-
 def test_where_nothing_balances_there_is_no_state() -> None:
     soft = geared(stiffness=sw.stiffness.Linear(k=1.0), load=sw.loads.Pendulum(inertia=0.1, gravity_torque=500.0))
     words = "no state has the quantities of initial: .* are not in equilibrium there; give another angle, or the torque$"
     with pytest.raises(ValueError, match=f"^{words}") as alone:
         sw.simulate(soft, SHORT, dt=1e-5, initial={"input_angle": 3.0})
-    with pytest.warns(sw.EnsembleWarning, match=words):
+    with pytest.warns(sw.simulation.EnsembleWarning, match=words):
         runs = sw.simulate_many(soft, SHORT, {"load.inertia": [0.1, 0.2]}, dt=1e-5, initial={"input_angle": 3.0})
     assert set(runs.failures.values()) == {str(alone.value)}
 

@@ -221,7 +221,7 @@ def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
         "exponential Runge-Kutta, cut at events, adaptive, "
     )
     assert tuple(_core.Method.__members__) == METHODS
-    with pytest.warns(sw.EnsembleWarning, match=r"^1 members have bristles .* take dt = 6\.3e-05 s or less$"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match=r"^1 members have bristles .* take dt = 6\.3e-05 s or less$"):
         sw.simulate_many(stiff, command(0.01), {"load.inertia": [0.5]})
     with pytest.raises(ValueError, match=r'^method = "euler" must be one of exponential, moreau_jean, rosenbrock$'):
         sw.simulate(DRIVE, command(0.01), method="euler")  # type: ignore[arg-type]
@@ -230,9 +230,9 @@ def test_the_method_is_chosen_by_the_bristles_and_said() -> None:
 def test_a_response_in_steps_too_long_for_the_bristles_is_warned_of() -> None:
     stiff, loose = on_bristles(1e5), {"tolerance": 1e9, "max_periods": 2}  # whatever comes of it
     with pytest.warns(RuntimeWarning, match=TOO_STIFF) as told:
-        sw.frequency_response(stiff, [500.0, 50.0], 1e-3, **loose)
+        sw.analysis.frequency_response(stiff, [500.0, 50.0], 1e-3, **loose)
     assert [warning.filename for warning in told] == [__file__]
-    sw.frequency_response(stiff, 500.0, 1e-3, **loose)  # of which 64 steps are short enough
+    sw.analysis.frequency_response(stiff, 500.0, 1e-3, **loose)  # of which 64 steps are short enough
 
 
 def test_a_fit_in_steps_too_long_for_the_bristles_is_warned_of() -> None:

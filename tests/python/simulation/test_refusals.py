@@ -89,7 +89,7 @@ def test_more_steps_than_can_be_are_refused() -> None:
     ("run", "size"),
     [
         (lambda long: sw.simulate(DRIVE, long), 0.66),
-        (lambda long: sw.derivatives(DRIVE, long, ["gear.damping"]), 3.54),
+        (lambda long: sw.analysis.derivatives(DRIVE, long, ["gear.damping"]), 3.54),
         (lambda long: sw.simulate_many(DRIVE, long, {"gear.damping": [1.0]}), 3.54),
     ],
 )
@@ -176,7 +176,7 @@ def test_a_step_too_coarse_at_rest_is_refused_before_any_is_taken(monkeypatch: p
 def test_what_a_step_cannot_follow_is_named(part: dict[str, Any], words: str) -> None:
     with pytest.raises(FloatingPointError, match=f"^dt = 0.005 s is too coarse for this drive: {words} as fast as"):
         sw.simulate(DRIVE.replace(**part), command(0.1), dt=5e-3, method="exponential")
-    with pytest.warns(sw.EnsembleWarning):
+    with pytest.warns(sw.simulation.EnsembleWarning):
         runs = sw.simulate_many(DRIVE.replace(**part), command(0.1), {"load.inertia": [0.5, 0.6]}, 5e-3)
     for said in runs.failures.values():
         assert re.match(f"dt = 0.005 s is too coarse for this drive: {words} as fast as", said)
@@ -233,7 +233,7 @@ def test_a_step_too_long_for_what_damps_is_refused_where_sticking_would_hide_it(
     with pytest.raises(FloatingPointError, match=words):
         sw.simulate(drive, volts, 1.01 * longest)
     light = {"load.inertia": [0.02] * 7 + [1e-3] * 2, "motor.inertia": [1e-4] * 7 + [1e-5] * 2}
-    with pytest.warns(sw.EnsembleWarning, match="2 of 9 members have no result"):
+    with pytest.warns(sw.simulation.EnsembleWarning, match="2 of 9 members have no result"):
         runs = sw.simulate_many(drive, volts, light, 0.5 * longest)
     assert all(re.search(words, reason) for reason in runs.failures.values())
 

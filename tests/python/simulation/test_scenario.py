@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.signal
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from numpy.typing import ArrayLike, NDArray
 from strainwave.simulation.scenario import (
     Scenario,

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import scenario
 from strainwave.simulation.scenario_file import KINDS, ScenarioFile
 

@@ -11,8 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave import _core
 from strainwave.simulation import run as simulation
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
@@ -106,7 +105,10 @@ def test_steps_are_judged_by_how_long_they_are() -> None:
     assert short.method == sw.simulate(fast, volts, 2e-5).method
     assert short["torque"] == pytest.approx(sw.simulate(fast, volts, 2e-5)["torque"], rel=1e-9)
     assert not sw.simulate_many(fast, volts, {"load.inertia": [1e-4]}, 2e-4, sample=2e-5).failures
-    assert sw.derivatives(fast, volts, ["load.inertia"], 2e-4, sample=2e-5).run["torque"].tolist() == short["torque"].tolist()
+    assert (
+        sw.analysis.derivatives(fast, volts, ["load.inertia"], 2e-4, sample=2e-5).run["torque"].tolist()
+        == short["torque"].tolist()
+    )
     assert len(sw.simulate(fast, sw.scenario.constant(5.0, 2e-5), 2e-4)) == 2
 
 
@@ -118,7 +120,7 @@ def test_a_jump_is_seen_wherever_inputs_are_laid_out_in_pieces(steps: int, monke
     monkeypatch.setattr(simulation, "STEPS_PER_CHUNK", steps)
     assert same(sw.simulate(STICKING, sticking, 2.0**-10), whole)
     before = sw.simulate(STICKING, sw.scenario.constant(0.0, jump), 2.0**-10)
-    after = sw.simulate(STICKING, sw.scenario.constant(0.05, 1.0 - jump), 2.0**-10, start=before.end)
+    after = sw.simulate(STICKING, sw.scenario.constant(0.05, 1.0 - jump), 2.0**-10, initial=before.end)
     assert after.end == whole.end
     assert whole["output_angle"][-1] > 0.01
 
@@ -243,7 +245,7 @@ def test_a_run_goes_on_where_another_ended_to_the_last_bit(drive: sw.Drive) -> N
     half = len(course.instants) // 2
     first = sw.simulate(drive, sw.scenario.constant(0.02, course.instants[half]), DT)
     rest = sw.scenario.constant(0.02, 0.25 - course.instants[half])
-    whole, second = sw.simulate(drive, HELD, DT), sw.simulate(drive, rest, DT, start=first.end)
+    whole, second = sw.simulate(drive, HELD, DT), sw.simulate(drive, rest, DT, initial=first.end)
     assert second.end == whole.end
     for name in COLUMNS:
         assert np.array_equal(first[name], whole[name][: half + 1]), name
@@ -332,8 +334,8 @@ def test_after_an_hour_of_rotation_a_run_is_as_accurate_as_at_first(
     drive = DRIVE.replace(gear=gear, control=sw.control.OpenLoop())
     start = sw.simulate(drive, sw.scenario.constant(sense * 21.0, 0.3), method=method).end
     voltage = sw.scenario.constant(sense * 21.0, 0.1)
-    first = sw.simulate(drive, voltage, start=start, method=method)
-    later = sw.simulate(drive, voltage, start=start.replace(turns=start.turns + sense * HOUR), method=method)
+    first = sw.simulate(drive, voltage, initial=start, method=method)
+    later = sw.simulate(drive, voltage, initial=start.replace(turns=start.turns + sense * HOUR), method=method)
     assert np.abs(first["input_speed"]).mean() * 30.0 / math.pi == pytest.approx(1950.0, rel=0.03)
     for name in ("torque", "twist", "transmission_error", "input_speed", "output_speed", "friction_input"):
         assert np.abs(later[name] - first[name]).max() <= 1e-12 * np.abs(first[name]).max(), name
@@ -375,7 +377,7 @@ def test_the_first_sample_of_a_run_from_the_end_of_another_drive_is_that_of_its_
     running = DRIVE.replace(control=sw.control.OpenLoop())
     slow, fast = (running.replace({"gear.friction_input": sw.friction.Coulomb(coulomb=coulomb)}) for coulomb in (0.01, 0.02))
     backwards = sw.scenario.constant(-20.0, 0.1)
-    run = simulate(fast, backwards, start=sw.simulate(slow, backwards).end)
+    run = simulate(fast, backwards, initial=sw.simulate(slow, backwards).end)
     assert run["input_speed"][0] < 0.0
     assert run["friction_input"][0] == run["friction_input"][1] == -0.02
 
@@ -383,11 +385,13 @@ def test_the_first_sample_of_a_run_from_the_end_of_another_drive_is_that_of_its_
 @pytest.mark.parametrize("simulate", [sw.simulate, sw.simulate_adaptively])
 def test_a_start_of_a_drive_with_other_models_is_refused(simulate: Callable[..., sw.Run]) -> None:
     other = DRIVE.replace({"gear.friction_input": sw.friction.Viscous(viscous=1e-4)})
-    with pytest.raises(ValueError, match="start is a state of another drive: its friction_input is lugre, here it is viscous"):
-        simulate(other, HELD, start=DRIVE.rest())
+    with pytest.raises(
+        ValueError, match="initial is a state of another drive: its friction_input is lugre, here it is viscous"
+    ):
+        simulate(other, HELD, initial=DRIVE.rest())
     elements = DRIVE.replace({"gear.hysteresis": sw.hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[1.0])})
     with pytest.raises(ValueError, match="its hysteresis is maxwell_slip with other numbers of elements"):
-        simulate(elements, HELD, start=DRIVE.rest())
+        simulate(elements, HELD, initial=DRIVE.rest())
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda run: pickle.loads(pickle.dumps(run))])
@@ -408,7 +412,7 @@ def test_a_start_in_motion_slides_whatever_the_state_says_of_sliding() -> None:
     rest = drive.rest()
     for speed in (5.0, -5.0):
         start = rest.replace(input_speed=speed)
-        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), start=start)
+        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.2), initial=start)
         assert run["input_speed"][-1] == pytest.approx(np.sign(speed) * (5.0 - 0.01 * 0.2 / 1e-3), rel=1e-12)
         assert np.sign(run["friction_input"][-1]) == np.sign(speed)
 

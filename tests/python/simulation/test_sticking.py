@@ -109,7 +109,7 @@ def test_a_twist_that_is_held_stays_to_the_last_bit(place: str, law: Any) -> Non
     drive = held(place, law)
     rest = drive.rest()
     start = rest.replace(transmission_error=rest.transmission_error + 2e-4)
-    runs = by_every_method(drive, sw.scenario.constant(0.05, 0.1), start=start, load_torque=2.0)
+    runs = by_every_method(drive, sw.scenario.constant(0.05, 0.1), initial=start, load_torque=2.0)
     check_constant(runs)
     for run in runs.values():
         assert run["torque"][0] == pytest.approx(1.2e4 * 2e-4 + 1e9 * 2e-4**3 + 0.43, abs=0.1)

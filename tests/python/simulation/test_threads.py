@@ -51,9 +51,9 @@ def test_derivatives_by_many_numbers_are_those_by_each_alone() -> None:
         "motor.inertia", "motor.resistance", "motor.inductance", "motor.torque_constant", "load.inertia", "gear.damping",
         "gear.stiffness.k1", "gear.stiffness.k2", "gear.stiffness.t1", "gear.input_inertia",
     ]  # fmt: skip
-    together = sw.derivatives(drive, command, names, 1e-4, sample=1e-2)
+    together = sw.analysis.derivatives(drive, command, names, 1e-4, sample=1e-2)
     for name in names:
-        alone = sw.derivatives(drive, command, [name], 1e-4, sample=1e-2)
+        alone = sw.analysis.derivatives(drive, command, [name], 1e-4, sample=1e-2)
         for column in ("input_angle", "torque"):
             assert np.array_equal(together[column, name], alone[column, name])
 

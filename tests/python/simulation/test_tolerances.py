@@ -10,13 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, assume, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, assume, given, settings, strategies as st
 from strainwave import _core
 
 from tests.evidence.tolerance import COLUMNS, Excited, at_limit, difference, until, verdict
-from tests.laws.test_gear import DRIVE as EVERYTHING
-from tests.laws.test_gear import EVERY_PART, cannot_create_energy, innermost, laws
+from tests.laws.test_gear import DRIVE as EVERYTHING, EVERY_PART, cannot_create_energy, innermost, laws
 from tests.support.little_memory import little_memory
 from tests.support.reference_drive import DRIVE, SMOOTH, STICKING, command
 from tests.support.samples import sample

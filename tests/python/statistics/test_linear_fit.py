@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.statistics.determined_sum import sum_by_information
 from strainwave.statistics.linear_fit import linear_fit, normal_inverse, own_share, solved
 

@@ -45,7 +45,7 @@ def test_a_map_of_lost_motion_has_the_width_of_the_loop_of_a_gear() -> None:
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), load=sw.loads.Inertia(inertia=1e-3))
     plant = Plant.of(sw.GearSet.of(drive, name="joint", source="stated"), 1e-3, 0.0)
     found = lost_motion_map(plant, goals.position(0.2, 0.2, "N.m"))
-    extent = sw.lost_motion(gear).extent
+    extent = sw.tuning.lost_motion(gear).extent
     assert extent == pytest.approx(2.0 * 5.0 / 1e4)
     assert np.array(found.forward) - np.array(found.backward) == pytest.approx(extent, rel=0.02)
 

@@ -23,19 +23,19 @@ MEMBERS = 3  # with the gear as its numbers have it four, which fill the registe
 
 
 @pytest.fixture(scope="module")
-def known() -> sw.Compensated:
+def known() -> sw.tuning.Compensated:
     return sw.compensate(KNOWN, members=MEMBERS, travel=0.03)
 
 
 @pytest.mark.whole_path("tuning")
-def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.Compensated) -> None:
+def test_a_model_that_is_known_gains_much_over_the_cascade(known: sw.tuning.Compensated) -> None:
     assert known.gain > 0.4
     assert set(known.chosen.candidate.effects) >= {"torsion"}
     assert known.chosen.upper("tracking error") < known.baseline.median("tracking error")
 
 
 @pytest.mark.slow("tuning")
-def test_what_is_written_runs_as_it_was_judged(known: sw.Compensated, tmp_path: Path) -> None:
+def test_what_is_written_runs_as_it_was_judged(known: sw.tuning.Compensated, tmp_path: Path) -> None:
     known.saved.save(tmp_path / "drive.toml")
     drive = sw.load(tmp_path / "drive.toml")
     assert drive.control == known.drive.control
@@ -71,7 +71,7 @@ def test_a_motion_that_creeps_may_have_its_friction_by_the_measured_motion() -> 
     assert observer.friction == drive.gear.friction_input
     assert found.gain > 0.5
     assert found.chosen.median("time at rest") == 0.0 < found.baseline.median("time at rest")
-    assert found.margins == sw.loop_margins(found.drive)  # an observer of friction is none of its loops
+    assert found.margins == sw.tuning.loop_margins(found.drive)  # an observer of friction is none of its loops
 
 
 def test_friction_is_by_the_measured_motion_only_where_it_creeps() -> None:
@@ -159,7 +159,7 @@ def test_drives_of_the_catalogue_run_on_gears_drawn_from_them(name: str) -> None
 
 
 @pytest.mark.slow("tuning")
-def test_the_gain_is_that_on_gears_by_which_nothing_was_chosen(known: sw.Compensated) -> None:
+def test_the_gain_is_that_on_gears_by_which_nothing_was_chosen(known: sw.tuning.Compensated) -> None:
     """It is chosen on the gears of the seed, and its gain is that on those of the next seed."""
     chosen = next(each for each in known.tried if each.candidate is known.chosen.candidate)
     assert not np.array_equal(chosen.figures["tracking error"], known.chosen.figures["tracking error"])
@@ -214,8 +214,8 @@ def test_a_torque_against_a_stop_is_reached_by_what_the_gear_twists() -> None:
 
 
 @pytest.mark.slow("tuning")
-def test_the_chosen_setting_keeps_its_margins(known: sw.Compensated) -> None:
-    assert known.margins == sw.loop_margins(known.drive)
+def test_the_chosen_setting_keeps_its_margins(known: sw.tuning.Compensated) -> None:
+    assert known.margins == sw.tuning.loop_margins(known.drive)
     assert known.margins.modulus >= 0.5
 
 

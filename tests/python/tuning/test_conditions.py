@@ -20,7 +20,7 @@ SET = sw.GearSet.read("robot-joint")
 
 
 @pytest.fixture(scope="module")
-def found() -> sw.Compensated:
+def found() -> sw.tuning.Compensated:
     return robot_joint()
 
 
@@ -52,14 +52,14 @@ def test_limits_are_the_last_factors_before_a_loss_and_a_failure() -> None:
     assert (worse.gains_up_to, worse.stable_up_to) == (1.0, 1.0)
 
 
-def test_too_much_torsion_in_the_model_gains_less_and_less(found: sw.Compensated) -> None:
+def test_too_much_torsion_in_the_model_gains_less_and_less(found: sw.tuning.Compensated) -> None:
     (torsion,) = [each for each in found.over_compensation if each.effect == "torsion"]
     assert torsion.chosen[0] < torsion.baseline[0]
     assert torsion.chosen[-1] > torsion.chosen[0]
     assert torsion.stable_up_to == 3.0
 
 
-def test_both_controllers_are_judged_at_other_speeds_and_loads(found: sw.Compensated) -> None:
+def test_both_controllers_are_judged_at_other_speeds_and_loads(found: sw.tuning.Compensated) -> None:
     names = [each.name for each in found.conditions]
     assert names[:4] == [
         "half the speed", "1.5 times the speed", "half the inertia of the load", "1.5 times the inertia of the load",

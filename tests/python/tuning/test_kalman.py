@@ -93,8 +93,8 @@ def has(poles: Array, pole: complex, error: float) -> bool:
 
 def test_the_closed_loop_has_the_poles_of_the_regulator() -> None:
     """The separation principle: those of the regulator that measures all are among them."""
-    found = np.linalg.eigvals(closed_loop(sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS, **NOISE), 0.0))
-    full = sw.regulator(JOINT, period=PERIOD, **WEIGHTS)
+    found = np.linalg.eigvals(closed_loop(sw.tuning.lqg(JOINT, period=PERIOD, encoder="input", **WEIGHTS, **NOISE), 0.0))
+    full = sw.tuning.lqg(JOINT, period=PERIOD, **WEIGHTS)
     step, _, now = exact_plant(0.0)
     gains = np.array([full.input_angle, full.input_speed, full.output_angle, full.output_speed])
     for pole in np.linalg.eigvals(step - np.outer(now, gains)):
@@ -104,7 +104,7 @@ def test_the_closed_loop_has_the_poles_of_the_regulator() -> None:
 @delays
 def test_the_other_poles_are_those_of_the_filter(delay: float) -> None:
     """They are the five stable roots of r + H(z) Q H(1/z), with H from process noise to measurement."""
-    law = sw.regulator(JOINT, period=PERIOD, delay=delay, encoder="input", **WEIGHTS, **NOISE)
+    law = sw.tuning.lqg(JOINT, period=PERIOD, delay=delay, encoder="input", **WEIGHTS, **NOISE)
     found = np.linalg.eigvals(closed_loop(law, delay))
     assert np.abs(found).max() < 1.0
     step, late, now = exact_plant(delay)
@@ -131,7 +131,7 @@ def test_of_a_step_the_motion_is_that_of_the_regulator_that_measures_all() -> No
     """The jump of the command does not excite the filter, and the joint is the model."""
     runs = []
     for encoder in ("input", "output"):
-        law: Any = sw.regulator(JOINT, period=PERIOD, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
+        law: Any = sw.tuning.lqg(JOINT, period=PERIOD, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
         control = sw.control.Sampled(law=law.replace(limit=1e6), period=PERIOD)
         run = sw.simulate(JOINT.replace(control=control), sw.scenario.constant(0.1, 0.5), 2e-5, sample=PERIOD)
         runs.append(run["output_angle"])
@@ -142,7 +142,7 @@ def test_a_feedforward_of_the_model_does_not_excite_the_filter() -> None:
     """Of a planned motion: the joint follows as the model moves, where without feed-forward it lags."""
     model = sw.compensation.ModelFeedforward(gear=JOINT.gear, load=JOINT.load, motor_inertia=ROTOR)
     command, errors = sw.scenario.sine(0.2, 1.0, 2.0, phase=-0.5 * np.pi, offset=0.2), []
-    law = sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS)
+    law = sw.tuning.lqg(JOINT, period=PERIOD, encoder="input", **WEIGHTS)
     for added in (sw.Compensation(), sw.Compensation(feedforward=model)):
         control = sw.control.Sampled(law=law, period=PERIOD, compensation=added)
         run = sw.simulate(JOINT.replace(control=control), command, sample=PERIOD)
@@ -159,7 +159,7 @@ def test_weight_and_viscous_friction_leave_no_error_of_the_input(delay: float) -
         (JOINT.replace(load=load), sw.scenario.constant(0.5, 3.0)),
         (JOINT.replace(gear=viscous), sw.scenario.ramp(0.1, 3.0)),
     ):
-        law = sw.regulator(plant, period=PERIOD, delay=delay, encoder="input", **WEIGHTS)
+        law = sw.tuning.lqg(plant, period=PERIOD, delay=delay, encoder="input", **WEIGHTS)
         control = sw.control.Sampled(law=law, period=PERIOD, delay=delay)
         run = sw.simulate(plant.replace(control=control), command, sample=PERIOD)
         assert run["input_angle"][-1] / RATIO == pytest.approx(float(command.value(3.0)), rel=1e-6)
@@ -172,7 +172,7 @@ def test_a_constant_torque_at_the_motor_leaves_no_error(delay: float) -> None:
     command = sw.scenario.ramp(0.1, 3.0)
     errors = {}
     for encoder in ("input", "output"):
-        law: Any = sw.regulator(JOINT, period=PERIOD, delay=delay, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
+        law: Any = sw.tuning.lqg(JOINT, period=PERIOD, delay=delay, encoder=encoder, **WEIGHTS)  # type: ignore[call-overload]
         control = sw.control.Sampled(law=law, period=PERIOD, delay=delay)
         plant = JOINT.replace(gear=JOINT.gear.replace(friction_input=friction), control=control)
         run = sw.simulate(plant, command, sample=PERIOD)
@@ -184,7 +184,10 @@ def test_a_constant_torque_at_the_motor_leaves_no_error(delay: float) -> None:
 
 def test_at_its_limit_the_filter_goes_on() -> None:
     """By `tracking` it takes what the motor was given, and moves as the regulator that measures all does at the same limit."""
-    full, law = (sw.regulator(JOINT, period=PERIOD, **WEIGHTS), sw.regulator(JOINT, period=PERIOD, encoder="input", **WEIGHTS))
+    full, law = (
+        sw.tuning.lqg(JOINT, period=PERIOD, **WEIGHTS),
+        sw.tuning.lqg(JOINT, period=PERIOD, encoder="input", **WEIGHTS),
+    )
     runs = []
     for each in (full, law, law.replace(tracking=())):
         control = sw.control.Sampled(law=each.replace(limit=0.5), period=PERIOD)
@@ -199,7 +202,7 @@ def test_on_the_robot_joint_it_is_about_as_good_as_all_that_is_measured() -> Non
     joint = sw.GearSet.read("robot-joint")
     errors, command = {}, sw.scenario.sine(0.2, 0.5, 4.0)
     for encoder in ("output", "input"):
-        law: Any = sw.regulator(joint, error=2e-4, encoder=encoder)  # type: ignore[call-overload]
+        law: Any = sw.tuning.lqg(joint, error=2e-4, encoder=encoder)  # type: ignore[call-overload]
         plant = joint.drive.replace(
             motor=sw.motor.CurrentSource(torque_constant=0.0320319, inertia=5.48e-5),
             sensors=sw.Sensors(),
@@ -222,4 +225,4 @@ def test_on_the_robot_joint_it_is_about_as_good_as_all_that_is_measured() -> Non
 )
 def test_what_it_refuses(changes: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        sw.regulator(JOINT, **changes)
+        sw.tuning.lqg(JOINT, **changes)

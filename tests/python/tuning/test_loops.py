@@ -30,7 +30,7 @@ def test_the_speed_loop_of_a_rigid_joint_is_that_of_its_inertia() -> None:
     """Held and late, w' = u / J is T / J (1 - d/T + d/T z^-1) / (z - 1), around which proportional control goes."""
     drive = joint(1e9, 3e4)
     law = sw.control.PositionSpeed(position_gain=1e-6, speed_proportional=0.05, limit=1.0, speed_feedforward=1.0)
-    found = sw.loop_margins(drive.replace(control=sw.control.Sampled(law=law, period=PERIOD, delay=DELAY))).speed
+    found = sw.tuning.loop_margins(drive.replace(control=sw.control.Sampled(law=law, period=PERIOD, delay=DELAY))).speed
     inertia, late = ROTOR + ARM / RATIO**2, DELAY / PERIOD
     at = np.linspace(1.0, np.pi / PERIOD, 200_000)
     z = np.exp(1j * at * PERIOD)
@@ -46,13 +46,13 @@ def test_the_speed_loop_of_a_rigid_joint_is_that_of_its_inertia() -> None:
 def test_a_gain_beyond_its_margin_makes_the_simulated_joint_unstable_and_one_below_does_not() -> None:
     plant = plant_of(joint(2e4, 50.0))
     drive = plant.controlled(tuned_law(plant, Setting(0.5, "output", 0.0)), sw.Compensation())
-    gain = sw.loop_margins(drive).position.gain
+    gain = sw.tuning.loop_margins(drive).position.gain
     control: Any = drive.control
     assert gain > 2.0
     for factor, is_stable in ((0.9, True), (1.1, False)):
         law = control.law.replace(position_gain=factor * gain * control.law.position_gain)
         changed = drive.replace(control=control.replace(law=law))
-        assert (sw.loop_margins(changed).position.modulus > 0.0) == is_stable
+        assert (sw.tuning.loop_margins(changed).position.modulus > 0.0) == is_stable
         run = sw.simulate(changed, sw.scenario.step(1e-5, 2.0), sample=PERIOD)
         error = np.abs(run["output_angle"] - 1e-5)
         assert (error[-200:].max() < error[200:400].max()) == is_stable
@@ -78,7 +78,7 @@ def test_the_cascade_is_as_sharp_as_its_modulus_margin_allows() -> None:
     plant = plant_of(sw.GearSet.read("robot-joint"))
     for encoder in ("input", "output"):
         law = sw.cascade("robot-joint", period=PERIOD, delay=DELAY, encoder=encoder)
-        assert sw.loop_margins(plant.controlled(law, sw.Compensation())).modulus >= MIN_MODULUS
+        assert sw.tuning.loop_margins(plant.controlled(law, sw.Compensation())).modulus >= MIN_MODULUS
         setting = sharpest(plant, encoder, 0.0)
         assert law == tuned_law(plant, setting)
         sharper = Setting(setting.sharpness * 2.0**0.5, encoder, 0.0)
@@ -102,6 +102,6 @@ def test_a_joint_without_damping_has_no_cascade_at_its_output() -> None:
 def test_margins_are_those_of_a_position_in_a_computer() -> None:
     drive = joint(1e4, 1.0)
     with pytest.raises(ValueError, match=r"OpenLoop must be control\.Sampled\(law=control\.PositionSpeed.*sw\.cascade"):
-        sw.loop_margins(drive)
+        sw.tuning.loop_margins(drive)
     with pytest.raises(ValueError, match=r"Sampled\(law=PID\) must be"):
-        sw.loop_margins(drive.replace(control=sw.control.Sampled(law=sw.control.PID(), period=1e-3)))
+        sw.tuning.loop_margins(drive.replace(control=sw.control.Sampled(law=sw.control.PID(), period=1e-3)))

@@ -11,7 +11,7 @@ import strainwave as sw
 
 def test_marks_lie_at_a_gain_of_one_and_at_minus_half_a_turn() -> None:
     law = sw.cascade("robot-joint", period=1e-3)
-    margins = sw.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
+    margins = sw.tuning.loop_margins(sw.load("robot-joint").replace(control=sw.control.Sampled(law=law, period=1e-3)))
     figure = margins.plot()
     magnitude, phase = figure.axes
     marks = {

@@ -179,7 +179,7 @@ def reference_run(drive: Drive, command: Scenario, joint: Scenario, step: float)
     """Return the run of a drive under a command while its output shaft moves as a joint, from rest at the angle 0."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return simulate(drive, command, step, inputs={"output_angle": joint}, start=drive.rest())
+        return simulate(drive, command, step, inputs={"output_angle": joint}, initial=drive.rest())
 
 
 def loaded(folder: Path) -> Any:

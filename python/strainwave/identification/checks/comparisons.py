@@ -100,8 +100,8 @@ def gravity_in_ratings(
                 "gravity within the ratings", each.source, share, MAX_GRAVITY_OF_RATING, "1", share > MAX_GRAVITY_OF_RATING,
                 f"the gravity of its load is {each.estimate.value:.4g} N·m, {share:.3g} times the largest torque in "
                 f"the ratings of {start.name} ({allowed:.4g} N·m)",
-                "see whether the side (--side), the unit of the angle and the torque, and the ratio are right, or start from a "
-                "set of the right size",
+                "see whether the side, the unit of the angle and the torque, and the ratio are right, or start from a set of "
+                "the right size",
             )  # fmt: skip
 
 

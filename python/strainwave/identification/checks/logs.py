@@ -17,10 +17,14 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
+from strainwave.questions import NUMBER
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
+RATIO_OF_ENCODERS = "ratio of two encoders"  # names of checks
+CONSTANT_BY_VOLTAGE = "torque constant by the voltage"
+INERTIA_IN_TWO_WAYS = "inertia of the load in two ways"
 FRICTION_BIAS = 0.02  # of an inertia by the torque of a motor: what a law of friction lacks goes into it (assumed)
 MIN_RATIO_SIGMA = 3.0  # standard deviations beyond which a measured ratio is another one
 MIN_RATIO_DIFFERENCE = 5e-3  # relative: orders of the gear move two encoders by less
@@ -32,7 +36,8 @@ MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its uni
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
 MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the nearest units, rpm and deg/s, lie a factor of 6 apart
 MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
-SPEED_UNITS = ("rad/s", "deg/s", "rpm", "rev/s")
+USUAL_UNITS = {"speed": ("rad/s", "deg/s", "rpm", "rev/s"), "angle": ("rad", "deg", "rev")}
+MAX_OFF_UNIT = 0.1  # relative: a unit that is nearer explains a factor
 RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
 
 
@@ -82,21 +87,25 @@ def unit_of_torque(file: Recognised) -> Iterator[Check]:
             "unit of the torque", file.path.name, share, MAX_SHARE_OF_WHOLE, "1", share > MAX_SHARE_OF_WHOLE,
             f"{file.columns[name]} contains whole numbers and is the name of CiA 402 for thousandths of the rated torque, but "
             f"{unit} is taken",
-            "give the rated torque of the motor, as " + as_option("unit", file.columns[name], "permille of 0.4 N.m"),
+            "give the rated torque of the motor, as " + as_option("unit", file.columns[name], f"permille of {NUMBER} N.m"),
         )  # fmt: skip
 
 
 def speed_against_angle(file: Recognised) -> Iterator[Check]:
     """Yield the check that a speed is the slope of the angle of the same shaft, in the units that both are taken in."""
     for factor, speed, names in _speed_factors(file):
-        usual = {unit: convert(1.0, unit, "rad/s") for unit in SPEED_UNITS}
-        fitting = next((unit for unit, size in usual.items() if abs(_own_size(file, speed) / factor / size - 1.0) < 0.1), "")
-        hint = as_option("unit", names[1], fitting or "UNIT")
+        sizes = {"speed": _own_size(file, speed) / factor, "angle": _own_size(file, speed.replace("speed", "angle")) * factor}
+        fitting = [
+            as_option("unit", name, unit)
+            for quantity, name in zip(("angle", "speed"), names, strict=True)
+            for unit in USUAL_UNITS[quantity]
+            if abs(sizes[quantity] / convert(1.0, unit, USUAL_UNITS[quantity][0]) - 1.0) < MAX_OFF_UNIT
+        ]
         off = max(factor, 1.0 / factor)
         yield Check(
             "speed against angle", file.path.name, off, MAX_SPEED_FACTOR, "1", off > MAX_SPEED_FACTOR,
             f"{names[1]} is {factor:.4g} times the slope of {names[0]}, in the units that they are taken in",
-            f"one unit is wrong: give it, with {hint} if it is that of the speed, or that of the angle",
+            f"one unit is wrong: {' or '.join(fitting) or 'no usual one makes this factor; see whether the time is right'}",
         )  # fmt: skip
 
 
@@ -122,10 +131,11 @@ def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
             yield factor, speed, names
 
 
-def _own_size(file: Recognised, speed: str) -> float:
-    """Return the size of the unit of a speed [rad/s]."""
-    unit = file.units.get(speed) or file.units.get(f"reflected_{speed[-5:]}", "rad/s")
-    return convert(1.0, unit, "rad/s") if measures(unit, "rad/s") else 1.0
+def _own_size(file: Recognised, channel: str) -> float:
+    """Return the size of the unit of an angle [rad] or a speed [rad/s]."""
+    si = USUAL_UNITS[channel[-5:]][0]
+    unit = file.units.get(channel) or file.units.get(f"reflected_{channel[-5:]}", si)
+    return convert(1.0, unit, si) if measures(unit, si) else 1.0
 
 
 def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check]:
@@ -135,7 +145,7 @@ def ratio_of_encoders(ratio: Ratio, drive: Drive, source: str) -> Iterator[Check
     expected = abs(drive.gear.kinematics.ratio)
     off, limit = abs(abs(ratio.value) - expected), max(MIN_RATIO_SIGMA * ratio.sigma, MIN_RATIO_DIFFERENCE * expected)
     yield Check(
-        "ratio of two encoders", source, off, limit, "1", off > limit,
+        RATIO_OF_ENCODERS, source, off, limit, "1", off > limit,
         f"the angles of input and output have the ratio {abs(ratio.value):.5g} ± {ratio.sigma:.2g}, the gear {expected:.6g}",
         f"if the ratio of the gear is that of the angles, give --constant ratio={abs(ratio.used):.6g}; a belt or pulley before "
         "the gear is part of it; else see whether both angles are in the units they are taken for",
@@ -165,7 +175,7 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
         return
     off = abs(abs(induced) / constant - 1.0)
     yield Check(
-        "torque constant by the voltage", source, off, MAX_CONSTANT_DIFFERENCE, "1", off > MAX_CONSTANT_DIFFERENCE,
+        CONSTANT_BY_VOLTAGE, source, off, MAX_CONSTANT_DIFFERENCE, "1", off > MAX_CONSTANT_DIFFERENCE,
         f"the motor induces {abs(induced):.4g} ± {sigma:.1g} V·s/rad, which is its torque constant in N·m/A, but "
         f"{constant:.4g} N·m/A is taken",
         f"give --constant torque_constant={abs(induced):.4g} if voltage and current are those of a DC motor or of one phase "
@@ -185,7 +195,7 @@ def inertias_of_load(by_spring: tuple[float, float], by_torque: tuple[float, flo
     of_other = float(np.hypot(of_noise, FRICTION_BIAS * other))
     apart = abs(one - other) / max(float(np.hypot(of_one, of_other)), 1e-300)
     return Check(
-        "inertia of the load in two ways", source, apart, MAX_INERTIA_SIGMA, "1", apart > MAX_INERTIA_SIGMA,
+        INERTIA_IN_TWO_WAYS, source, apart, MAX_INERTIA_SIGMA, "1", apart > MAX_INERTIA_SIGMA,
         f"the load has an inertia of {one:.3g} ± {of_one:.1g} {unit} by how it winds the gear up, and {other:.3g} ± "
         f"{of_other:.1g} by the torque of the motor: {apart:.2g} standard deviations apart",
         "see whether torque constant, ratio, motor_inertia and the side of the torque are right",

@@ -2,35 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.files.units import convert
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
-from strainwave.identification.checks.mistakes import wrong_units
+from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
+from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
-from strainwave.orders.ripple import ripple
+from strainwave.messages import as_option
+from strainwave.orders.comb import RATIOS
+from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
+RATIO_BY_ORDERS = "ratio by orders"  # name of the check
 STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
 MAX_RATIO_DIFFERENCE = 0.15  # of its logarithm, by gravity: the ratios of a family of gears, as 100 and 120, differ by more
 RATIOS_TRIED = np.linspace(-np.log(2.0), np.log(2.0), 31)  # logarithms of the true angle over the one taken
 RIPPLE_COLUMNS = ("current", "motor_torque", "torque")  # in which the ripple of the wave generator is looked for
+MAX_ROWS_OF_RIPPLE = 2**14
+MIN_ROWS_PER_PERIOD = 4.0  # of the main line of a gear of the largest ratio
 MIN_GRAVITY_SIGMA = 2.0  # standard deviations, beyond which gravity is determined
 MOTION_BLOCKS = 10  # of the motion
 MOVED_BY_OTHERS = ("load.", "gear.friction_mesh.")  # numbers of a load, and of a loss under it, which other joints change
@@ -43,7 +50,7 @@ MAX_NEGATIVE_PART = 1.0  # of the held-out error of plain least squares: a large
 
 
 def checks_of_motion(
-    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, source: str, joints: Collection[str] = ()
+    best: MotionCandidate, drive: Drive, recording: Recording, held_out: HeldOut, file: Recognised
 ) -> Iterator[Check]:
     """Yield the checks of a log by its own motion.
 
@@ -52,14 +59,14 @@ def checks_of_motion(
         drive: as far as it was known before
         recording: of the log, with its angle in the unit of the file
         held_out: its error on data held out, and that of plain least squares
-        source: name of the file
-        joints: names of other joints that move
+        file: that contains the log
     """
+    source, joints = file.path.name, file.neighbours
     alone = not best.log.regressors
     if alone and not np.any(best.log.extra):
         yield from (by_ratio := list(ratio_by_gravity(best, drive, recording, source)))
         if not any(check.failed for check in by_ratio) and _has_gravity(best):
-            yield from angle_in_gravity(best, drive, recording, source)
+            yield from angle_in_gravity(best, drive, recording, file)
     yield from ratio_by_orders(drive, recording, source)
     if alone:
         yield from pendulum_length(best.fit.estimates, source)
@@ -70,7 +77,7 @@ def checks_of_motion(
 # ---- Gravity ---------------------------------------------------------------------------------------------------------
 
 
-def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, source: str) -> Iterator[Check]:
+def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, file: Recognised) -> Iterator[Check]:
     """Yield the check that gravity goes with the sine of the angle in the unit and of the side that are taken for it.
 
     A wrong unit or side of an angle scales inertia and friction, which absorb it. Gravity of a joint that moves far enough
@@ -81,19 +88,19 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     if len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK:
         return
     usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
-    share, found = 1.0, ""
-    for what, factor in _mistakes(recording, ratio).items():
+    share, found, remedy = 1.0, "", ""
+    for what, factor, option in _mistakes(recording, ratio, file.columns):
         if np.ptp(log.motion.angle) * factor / ratio > MAX_JOINT_ANGLE:
             continue
         other = _squares(log, drive, factor, delay)
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
         if gain > share and _is_less(other, usual):
-            share, found = gain, what
+            share, found, remedy = gain, what, option
     wrong = f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}"
     yield Check(
-        "angle in the sine of gravity", source, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
+        "angle in the sine of gravity", file.path.name, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
         wrong if found else "gravity goes with the sine of its angle: no other unit or side of it leaves less",
-        "see whether unit and side of the angle are right, and state them: --unit or --column input_angle= or output_angle=",
+        f"see whether it is so, and state it: {remedy}" if found else "",
     )  # fmt: skip
 
 
@@ -121,7 +128,8 @@ def ratio_by_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
         "ratio by gravity", source, abs(off), MAX_RATIO_DIFFERENCE, "1", is_sure and abs(off) > MAX_RATIO_DIFFERENCE,
         f"gravity goes with the sine of the motor's angle over about {ratio / scale:.3g}, the ratio of the gear is "
         f"{ratio:.6g}",
-        "see whether the start set is that of this gear, or give its ratio: --constant ratio=NUMBER",
+        "see whether the start set is that of this gear, or give the ratio on its plate, if it is near this one: "
+        f"--constant ratio={ratio / scale:.3g}",
     )  # fmt: skip
 
 
@@ -160,7 +168,7 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
     if column is None or "output_angle" not in recording or "input_angle" in recording:
         return
     try:
-        concluded = ripple(recording, column, angle="output_angle", side="output").concluded
+        concluded = ripple(_coarser(recording, column), column, angle="output_angle", side="output").concluded
     except ValueError:  # too short, too slow or at rest: there is nothing to compare
         return
     if not concluded:
@@ -168,21 +176,42 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
     ratio = abs(float(drive.gear.kinematics.ratio))
     off = min(abs(each - ratio) for each in concluded)
     found = " or ".join(map(str, concluded))
+    options = " or ".join(f"--constant ratio={each}" for each in concluded)
     yield Check(
-        "ratio by orders", source, off, 1.0, "1", off > 1.0,
+        RATIO_BY_ORDERS, source, off, 1.0, "1", off > 1.0,
         f"the ripple of the {column.replace('_', ' ')} over the angle of the output is that of a ratio of {found}, the ratio "
         f"of the gear is {ratio:.6g}",
-        f"see whether the start set is that of this gear, or give its ratio: --constant ratio={concluded[0]}",
+        f"see whether the start set is that of this gear, or give its ratio: {options}",
     )  # fmt: skip
 
 
-def _mistakes(recording: Recording, ratio: float) -> dict[str, float]:
-    """Return likely mistakes of the angle, and the true angle over the one that is taken."""
-    name = "input_angle" if "input_angle" in recording else "output_angle"
-    wrong = {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(name)).items()}
-    if name == "input_angle":
-        return {**wrong, "it is that of the output": ratio}
-    return {**wrong, "it is that of the input": 1.0 / ratio}
+def _coarser(recording: Recording, column: str) -> Recording:
+    """Return the means of neighbouring rows, so many that a line of the largest ratio remains; the first ones of a long record.
+
+    A ratio is concluded from some ten thousand rows as from more, in less time.
+    """
+    angle = np.unwrap(recording.values("output_angle", "rad"))
+    step = np.abs(np.diff(angle))
+    usual = float(np.median(step[step > 0.0])) if np.any(step > 0.0) else np.inf
+    period = np.pi / (RATIOS[-1] * usual)  # of the main line, in rows
+    every = max(1, min(int(period / MIN_ROWS_PER_PERIOD), len(angle) // MAX_ROWS_OF_RIPPLE))
+    rows = min(len(angle) // every, MAX_ROWS_OF_RIPPLE) * every
+    names = [name for name in ("time", "output_angle", column) if name in recording]
+    means = {
+        name: (angle if name == "output_angle" else recording[name])[:rows].reshape(-1, every).mean(axis=1) for name in names
+    }
+    return Recording(means, {name: "rad" if name == "output_angle" else recording.unit(name) for name in names})
+
+
+def _mistakes(recording: Recording, ratio: float, columns: Mapping[str, str]) -> Iterator[tuple[str, float, str]]:
+    """Yield likely mistakes of the angle: in words, the true angle over the one that is taken, and the option that mends it."""
+    name, other, factor = ("input_angle", "output_angle", ratio)
+    if name not in recording:
+        name, other, factor = other, name, 1.0 / ratio
+    unit, column = recording.unit(name), columns.get(name, name)
+    for right in MISTAKEN.get(unit, ()):
+        yield f"the angle is in {right}, not in {unit}", convert(1.0, right, unit), as_option("unit", column, right)
+    yield f"it is that of the {other.removesuffix('_angle')}", factor, as_option("column", other, column)
 
 
 def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array:

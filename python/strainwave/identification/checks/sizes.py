@@ -135,7 +135,7 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
     mistake, rest = nearest(factor, wrong_units("torque", recording.unit("torque")))
     remedy = f"{mistake}see whether the units of both columns are right"
     if side == "output":
-        remedy = f"if it was measured at the input, leave --side output out; {mistake}see whether units are right"
+        remedy = f"if it was measured at the input, give --side input; {mistake}see whether units are right"
     elif factor > MAX_FACTOR and _off_at_output(table, law, known, ratio) < min(
         np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))
     ):
@@ -256,8 +256,8 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     measured, known = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
     factor, squared, limit = max(measured / known, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
     mistakes = {
-        "twist and torque were measured at the input (name them input_angle and input_torque)": 1.0 / squared,
-        "input_angle and input_torque were measured at the output (name them twist and torque)": squared,
+        "angle and torque were measured at the input: give --side input": 1.0 / squared,
+        "angle and torque were measured at the output: give --side output": squared,
     }
     torque, angle = ("torque", "twist") if loop.input_ratio is None else ("input_torque", "input_angle")
     mistakes |= wrong_units("torque", recording.unit(torque))

@@ -18,6 +18,7 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.kinematics import StrainWave
+from strainwave.messages import as_option
 from strainwave.statistics.scale import noise_sigma
 
 Array = NDArray[np.float64]
@@ -111,13 +112,14 @@ def allowed(found: Fit) -> Array:
     return np.array([MAX_SHARE_OF_LOOP])
 
 
-def causes(recording: Recording, drive: Drive) -> list[Cause]:
+def causes(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> list[Cause]:
     """Return likely mistakes in a run of a drive, those first that let the drive as it stands come nearest to the measurement.
 
-    Signs, units, sides, and the ratio of the gear. The drive is run once for each, not fitted.
+    Signs, units, sides, and the ratio of the gear. The drive is run once for each, not fitted. `columns` are the names in the
+    file, by channel.
     """
     scored = []
-    for cause in _likely(recording, drive):
+    for cause in _likely(recording, drive, columns):
         try:
             log = DriveLog.of(cause.recording, cause.drive)
             zeros = np.array([nuisance.start for nuisance in log.nuisances])
@@ -129,7 +131,7 @@ def causes(recording: Recording, drive: Drive) -> list[Cause]:
     return [cause for _, cause in sorted(scored, key=lambda pair: pair[0])]
 
 
-def _likely(recording: Recording, drive: Drive) -> Iterator[Cause]:
+def _likely(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> Iterator[Cause]:
     for name in recording.names:
         if name != "time":
             yield Cause(
@@ -137,7 +139,7 @@ def _likely(recording: Recording, drive: Drive) -> Iterator[Cause]:
                 _scaled(recording, name, -1.0), drive,
             )  # fmt: skip
     yield from _units(recording, drive)
-    yield from _sides(recording, drive)
+    yield from _sides(recording, drive, columns)
     yield from _ratio(recording, drive)
 
 
@@ -146,12 +148,12 @@ def _units(recording: Recording, drive: Drive) -> Iterator[Cause]:
         unit = recording.unit(name)
         for other in MISTAKEN.get(unit, ()):
             yield Cause(
-                f'"{name}" is in {other}, not in {unit}', f"state its unit, as in {name} [{other}]",
+                f'"{name}" is in {other}, not in {unit}', f"state its unit: {as_option('unit', name, other)}",
                 _scaled(recording, name, convert(1.0, other, unit)), drive,
             )  # fmt: skip
 
 
-def _sides(recording: Recording, drive: Drive) -> Iterator[Cause]:
+def _sides(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> Iterator[Cause]:
     for quantity in ("angle", "speed"):
         sides = (f"input_{quantity}", f"output_{quantity}")
         present = [side for side in sides if side in recording]
@@ -161,8 +163,8 @@ def _sides(recording: Recording, drive: Drive) -> Iterator[Cause]:
         what = (
             f'"{present[0]}" was measured at the other side' if len(present) == 1 else f"the columns of {quantity} are swapped"
         )
-        remedy = ", ".join(f"--column {names[name]}={name}" for name in present)
-        yield Cause(what, f"name the columns the other way, as {remedy}", _renamed(recording, names), drive)
+        remedy = " ".join(as_option("column", names[name], columns.get(name, name)) for name in present)
+        yield Cause(what, f"name the columns the other way: {remedy}", _renamed(recording, names), drive)
 
 
 def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
@@ -178,7 +180,8 @@ def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
     fixed = "circular_spline" if drive.gear.kinematics.ratio < 0.0 else "flexspline"
     kinematics = StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
     yield Cause(
-        f"the ratio of the gear is about {abs(slope):.3g}, not {known:g}", f"start from a gear of ratio {round(abs(slope))}",
+        f"the ratio of the gear is about {abs(slope):.3g}, not {known:g}",
+        f"start from a gear of ratio {round(abs(slope))}, or give --constant ratio={round(abs(slope))}",
         recording, drive.replace(gear=drive.gear.replace(kinematics=kinematics)),
     )  # fmt: skip
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import Fit, solved_problem
+from strainwave.presentation import Statement
 from strainwave.statistics.determined_sum import sum_in_words
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ MIN_SINGULAR = 1e-9  # of the largest singular value; directions with a smaller 
 
 
 @dataclass(frozen=True, eq=False)
-class Combination(ComparedByFields):
+class Combination(ComparedByFields, Statement):
     """Parameters that the data do not determine one by one.
 
     Attributes:
@@ -40,7 +41,7 @@ class Combination(ComparedByFields):
     >>> run = sw.simulate(drive, voltage, sample=1e-2, record=["command", "input_angle"])
     >>> noise = 1e-2 * np.random.default_rng(0).normal(size=len(run))
     >>> log = run.with_column("input_angle", run["input_angle"] + noise, "rad")
-    >>> (combination,) = sw.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
+    >>> (combination,) = sw.identification.combinations(sw.fit(drive, log, ["motor.inertia", "load.inertia"]))
     >>> combination.formula, round(1e6 * combination.value), round(1e6 * combination.sigma, 2)  # 1e-6 kg.m2
     ('motor.inertia + 0.0001 load.inertia', 20, 0.04)
     """
@@ -53,7 +54,7 @@ class Combination(ComparedByFields):
     sigma: float = np.nan
     unit: str = ""
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         if len(self.paths) == 1:
             known = f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else ""
             return f"{self.paths[0]} is not determined{known}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Any
 
@@ -21,6 +21,9 @@ from strainwave.identification.candidates.rotor import (
     with_rotor,
 )
 from strainwave.identification.checks.logs import (
+    CONSTANT_BY_VOLTAGE,
+    INERTIA_IN_TWO_WAYS,
+    RATIO_OF_ENCODERS,
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
@@ -28,7 +31,7 @@ from strainwave.identification.checks.logs import (
     torque_constant_by_voltage,
     unit_of_torque,
 )
-from strainwave.identification.checks.motion import checks_of_motion
+from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_motion
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog
@@ -38,14 +41,13 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import orders_of, with_error
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.determined import friction_at
+from strainwave.identification.results.curves import picture_of_friction, picture_of_turn
+from strainwave.identification.results.determined import PATH as STEADY, friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
-from strainwave.identification.results.motor_inertia import LOAD as INERTIA
-from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import transmission_error
@@ -64,6 +66,10 @@ OF_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=NUMBER"
 )
+CHECKS_OF = {  # numbers of the drive by which estimates scale, and the checks of each
+    "ratio": {RATIO_OF_ENCODERS, RATIO_BY_ORDERS},
+    "torque constant": {CONSTANT_BY_VOLTAGE, INERTIA_IN_TWO_WAYS},
+}
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
 
 
@@ -76,7 +82,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     others = [each for each in models if each.model is not best.model]
     log = best.log
     other = _other_laws(best, others, in_current) if taken.has_friction else ()
-    of_model = [*_delay(best), *other, *_one_encoder(taken)]
+    of_model = [*_delay(best), *other]
     if file.neighbours and not file.regressors:
         of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
     apart = spread_by_models(best, others)
@@ -92,6 +98,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     if set(ENCODERS) <= set(recording.names):
         errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
+        if any(each.significant and each.shaft == "input" for each in errors.orders):
+            between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
         if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
             squared = drive.gear.kinematics.ratio**2
@@ -105,7 +113,6 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     best = judged
     if not in_current and taken.has_friction:
         known, estimates = _with_friction(known, best, estimates, file.path.name)
-    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
     law = sliding(best.fit.parts[0].model)
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
@@ -118,12 +125,17 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
     ]
-    checks += checks_of_motion(best, drive, recording, held_out, name, file.neighbours)
-    pictures = (Picture(predicted), *between.pictures)
+    checks += checks_of_motion(best, drive, recording, held_out, file)
+    unchecked = _unchecked(taken, {check.name for check in checks})
+    of_model += _scales(unchecked)
+    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
+    dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
+    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
+    pictures = (Picture(predicted), *of_friction, *between.pictures)
     return (
         FileResult(
             name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit, bend=best.bend, between=between.between,
+            fit=best.fit, bend=best.bend, between=between.between, unchecked=unchecked,
         ),
         known,
     )  # fmt: skip
@@ -166,15 +178,24 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
             yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
 
 
-def _one_encoder(taken: PreparedLog) -> Iterator[str]:
-    """Yield the sentence about what a record with one encoder cannot contradict."""
-    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
-    if set(ENCODERS) <= set(taken.recording.names) or taken.in_current or taken.log.effort != "current":
-        return
-    yield (
-        f"one encoder checks neither the ratio, {abs(taken.drive.gear.kinematics.ratio):.6g}, nor the torque constant, "
-        f"{constant:.4g} N·m/A: friction, inertia and gravity scale with them"
-    )
+def _unchecked(taken: PreparedLog, checks: Set[str]) -> dict[str, str]:
+    """Return ratio and torque constant of a log of current, with their values, if no check of the log is one of them."""
+    if taken.in_current or taken.log.effort != "current":
+        return {}
+    values = {
+        "ratio": f"{abs(taken.drive.gear.kinematics.ratio):.6g}",
+        "torque constant": f"{float(getattr(taken.drive.motor, 'torque_constant', 0.0)):.4g} N·m/A",
+    }
+    return {name: value for name, value in values.items() if not checks & CHECKS_OF[name]}
+
+
+def _scales(unchecked: Mapping[str, str]) -> Iterator[str]:
+    """Yield the sentence about numbers of the drive that a log does not check."""
+    names = [f"the {name}, {value}" for name, value in unchecked.items()]
+    if len(names) == 2:
+        yield f"one encoder checks neither {', nor '.join(names)}: friction, inertia and gravity scale with them"
+    elif names:
+        yield f"it does not check {names[0]}: friction, inertia and gravity scale with it"
 
 
 def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:

@@ -21,7 +21,7 @@ from strainwave.identification.experiments.motion_log import MIN_INERTIA, Motion
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import curves_of_shafts
+from strainwave.identification.results.curves import curves_of_shafts, picture_of_twist
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
 from strainwave.identification.results.motor_inertia import MOTOR
@@ -37,7 +37,7 @@ PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques
 MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
 DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
 MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
-BREAKAWAY = "gear.hysteresis.breakaway"
+BREAKAWAY, STIFFNESS = "gear.hysteresis.breakaway", "gear.stiffness."
 GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
@@ -63,11 +63,16 @@ def between_encoders(
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
     of_gear = tuple(_estimates(found, scale, known, taken.in_current))
+    has_stiffness = any(each.path.startswith(STIFFNESS) and not each.why for each in of_gear)
     result = FileResult(
         source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
         checks=tuple(_inertias(found, scale, estimates, taken, source)),
-        pictures=(Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),), between=found.fit,
+        pictures=(
+            *([picture_of_twist(found.fit)] if has_stiffness else []),
+            Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),
+        ),
+        between=found.fit,
     )  # fmt: skip
     parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
     finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()

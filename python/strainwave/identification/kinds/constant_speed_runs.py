@@ -292,7 +292,7 @@ def _gravity(levels: Levels) -> Iterator[FileEstimate]:
 
 
 def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
-    """Return friction over the angle of the input, as document P describes it; nothing if no run turns once or more."""
+    """Return friction over the angle of the input, as the position control article has it; nothing if no run turns once."""
     turning = [run for run in runs if run.turning is not None]
     if not turning:
         return (), known
@@ -357,7 +357,7 @@ def _of_position(found: PositionFit, count: int) -> Iterator[str]:
             for name in ("cosine", "sine")
             for one, other in zip(getattr(found.law, name), getattr(found.integrated, name), strict=True)
         )
-        yield f"document P's integrals over whole turns give waves that differ by {off:.1g} N·m at most"
+        yield f"the position control article's integrals over whole turns give waves that differ by {off:.1g} N·m at most"
 
 
 def _waves(found: PositionFit) -> dict[int, tuple[float, float, float]]:

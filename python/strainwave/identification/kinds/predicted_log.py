@@ -42,7 +42,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction, judged, validations
 from strainwave.messages import listed, one_line
 from strainwave.orders.lines import SpectrumLine
-from strainwave.orders.ripple import ripple
+from strainwave.orders.torque_ripple import ripple
 from strainwave.questions import TORQUE_CONSTANT, QuestionError
 from strainwave.statistics.residuals import rms
 

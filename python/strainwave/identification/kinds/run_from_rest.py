@@ -66,7 +66,7 @@ class RunFromRest(Kind):
         whole = explained(found.fit, name)
         kept = InfluenceOfKept.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
         if whole.failed:
-            whole = _with_cause(whole, found.fit, recording, drive, free)
+            whole = _with_cause(whole, found.fit, file, drive, free)
         fitted = JudgedFit(found.fit, name, kept, not whole.failed, prefix="")
         estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), found.fit
         if not whole.failed:
@@ -123,10 +123,10 @@ def _load(log: DriveLog, fit: Fit) -> Recording:
     return Recording(run.columns, run.units)
 
 
-def _with_cause(check: Check, found: Fit, recording: Recording, drive: Drive, free: list[str]) -> Check:
+def _with_cause(check: Check, found: Fit, file: Recognised, drive: Drive, free: list[str]) -> Check:
     """Return the check with the mistake that would explain the run, if one does."""
     before = float(unexplained(found).max())
-    for cause in causes(recording, drive)[:MAX_CAUSES]:
+    for cause in causes(file.recording, drive, file.columns)[:MAX_CAUSES]:
         log = DriveLog.of(cause.recording, cause.drive)
         again = fit_log(log, prepared(log, cause.drive, friction_known=False), free).fit
         if not explained(again, check.source).failed:

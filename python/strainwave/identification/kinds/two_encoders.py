@@ -11,7 +11,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
 from strainwave.identification.reading.sides import pair, sides_of_angles
-from strainwave.identification.results.curves import curves_of_orders
+from strainwave.identification.results.curves import curves_of_orders, picture_of_turn
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
 from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
@@ -42,7 +42,7 @@ class TwoEncoders(Kind):
         given = file.constants.get("ratio")
         found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
         name = file.path.name
-        remarks, pictures = (*file.remarks, *found.remarks), (Picture(curves_of_orders(found)),)
+        remarks, pictures = (*file.remarks, *found.remarks), (picture_of_turn(found), Picture(curves_of_orders(found)))
         result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)
         return result, with_error(known, found, name)
 

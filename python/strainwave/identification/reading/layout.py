@@ -123,7 +123,9 @@ def _by_numbers(table: OpenTable, timed: int | None) -> MatrixLayout | None:
     spread = {place: float(np.nanstd(values)) for place, values in columns.items() if place != time}
     moving = {place: columns[place] for place in spread if spread[place] > MIN_SPREAD * max(spread.values())}
     pairs = _speeds(moving, instants)
-    return _blocks(pairs, [place for place in places if place != time], len(table.labels), time)
+    found = _blocks(pairs, [place for place in places if place != time], len(table.labels), time)
+    efforts = {} if found is None else {name: each for name, each in found.efforts.items() if set(each) & moving.keys()}
+    return found and replace(found, efforts=efforts)
 
 
 def interleaved(values: Array) -> int:

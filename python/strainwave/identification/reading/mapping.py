@@ -28,8 +28,7 @@ from typing import Any, NamedTuple, get_args
 
 from strainwave import arguments
 from strainwave.files.gear_file import at, document
-from strainwave.files.units import check as check_unit
-from strainwave.files.units import convert
+from strainwave.files.units import check as check_unit, convert
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.names import Side

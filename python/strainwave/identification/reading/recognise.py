@@ -31,10 +31,12 @@ from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_sl
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
 from strainwave.identification.reading.values import read
 from strainwave.messages import listed, one_line, quoted
+from strainwave.presentation import Presented
 from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
+MAX_ANSWERS = 18  # of one question: two for each of eight joints, and for all
 MIN_MOTION = 0.02  # rad: another joint that moves by less rests
 RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
 STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
@@ -42,7 +44,7 @@ REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}
 
 
 @dataclass(frozen=True)
-class Recognised:
+class Recognised(Presented):
     """A file of measurements as it is read.
 
     Args:
@@ -126,12 +128,20 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     """
     source, given = measurement_file(file), mapping or FileMapping()
     try:
+        return _as_read(source, given)
+    except QuestionError as question:
+        raise _with_answers_that_work(source, given, question) from None
+
+
+def _as_read(source: MeasurementFile, given: FileMapping) -> Recognised:
+    """Return a file as it is read, with the ways to read it that a fit may decide between; raises as `recognise`."""
+    try:
         return _recognised(source, given)
     except QuestionError as question:
         if question.by_fit:
             with suppress(ValueError):  # an answer leads to a further question, or works not at all
                 return _with_ways(source, given, question)
-        raise _with_answers_that_work(source, given, question) from None
+        raise
 
 
 def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionError) -> Recognised:
@@ -148,25 +158,48 @@ def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionEr
 
 
 def _with_answers_that_work(source: MeasurementFile, given: FileMapping, question: QuestionError) -> QuestionError:
-    """Return a question with those of its answers with which the file can be read or asks another question, and what it is."""
+    """Return a question with those of its answers with which the file can be read, each with what it is then.
+
+    An answer that leads to a further question is replaced by the answers to both, so that one command answers all.
+    """
     answers, why_not = list[Answer](), ""
     for answer in question.answers:
         try:
-            mapping = given.updated(FileMapping(**answer.given))
-            if mapping == given and not answer.files:
-                continue
-            if mapping.joint == ALL_JOINTS and not joints_of(source, given):
-                continue
-            if not answer.files and mapping.joint != ALL_JOINTS:
-                answer = replace(answer, gives=_in_words(_recognised(source, mapping)))
-            answers.append(answer)
-        except QuestionError as following:
-            if following.question != question.question and following.answers:
-                answers.append(replace(answer, gives="one more question follows"))
+            answers += _ways_on(source, given, answer, question)
         except ValueError as error:
             why_not = why_not or f"; not {answer.label}: {error}"
     fault = question.question if answers else f"{question.question}{why_not}"
-    return QuestionError(one_line(fault), answers).of(source.table.file)
+    but_for_joint = list(dict.fromkeys(_but_for_joint(each) for each in answers))
+    answers.sort(key=lambda each: but_for_joint.index(_but_for_joint(each)))
+    fault += f"; the first {MAX_ANSWERS} of {len(answers)} answers are" if len(answers) > MAX_ANSWERS else ""
+    return QuestionError(one_line(fault), answers[:MAX_ANSWERS]).of(source.table.file)
+
+
+def _but_for_joint(answer: Answer) -> str:
+    """Return what an answer states besides the joint."""
+    return str({**answer.given, "joint": None})
+
+
+def _ways_on(source: MeasurementFile, given: FileMapping, answer: Answer, question: QuestionError) -> list[Answer]:
+    """Return an answer with what a file is then; with each answer to the question that follows, if one does.
+
+    Raises:
+        ValueError: the file cannot be read so
+    """
+    mapping = given.updated(FileMapping(**answer.given))
+    if answer.files or mapping == given:
+        return [answer] if answer.files else []
+    if mapping.joint == ALL_JOINTS:
+        of_first = [Answer(answer.label, {**answer.given, "joint": joint}) for joint in joints_of(source, given)[:1]]
+        ways = [way for first in of_first for way in _ways_on(source, given, first, question)]
+        return [replace(each, given={**each.given, "joint": ALL_JOINTS}, gives="") for each in ways]
+    try:
+        return [replace(answer, gives=_in_words(_as_read(source, mapping)))]
+    except QuestionError as following:
+        if following.question == question.question:
+            return []
+        ways = [way for each in following.answers for way in _ways_on(source, mapping, each, following)]
+        return [way.after(answer) for way in ways]
 
 
 def _in_words(file: Recognised) -> str:

@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.elastic import transmitted_torque
+from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, RecordFit
 from strainwave.identification.results.file_result import Look, Picture
@@ -18,6 +21,8 @@ from strainwave.messages import listed, quoted
 from strainwave.orders.two_encoders import TransmissionError
 
 Array = NDArray[np.float64]
+TURN_BINS = 72  # parts of a turn of the input: order 8 has nine of them
+SPEED_BINS = 16  # of each direction of motion, with as many samples each
 
 
 def curves_of(fit: Fit) -> Recording:
@@ -93,6 +98,76 @@ def curves_of_orders(found: TransmissionError) -> Recording:
     columns |= {"residual": curves["residual"], "sigma": np.sqrt(variance)}
     units = dict.fromkeys(columns, "rad") | {over: curves.unit(over)}
     return Recording(columns, units)
+
+
+def picture_of_turn(found: TransmissionError) -> Picture:
+    """Return the picture of the transmission error over a turn of the input, its mean in each part of the turn.
+
+    Torque, direction and orders of the output are taken out, as far as the record determines them.
+    """
+    angle = np.mod(found.curves["input_angle"], 2.0 * np.pi)
+    measured = sum(_waves(found, found.curves["input_angle"]), found.curves["residual"])
+    place = (angle / (2.0 * np.pi) * TURN_BINS).astype(int) % TURN_BINS
+    filled = np.unique(place)
+    middle = (filled + 0.5) * 2.0 * np.pi / TURN_BINS
+    means = np.array([measured[place == each].mean() for each in filled])
+    columns = {
+        "input_angle": middle,
+        "transmission_error": means,
+        "modelled": sum(_waves(found, middle), np.zeros_like(middle)),
+    }
+    orders = tuple((each.order, each.amplitude, each.amplitude_sigma) for each in found.orders if each.shaft == "input")
+    title = "transmission error over a turn of the input"
+    return Picture(Recording(columns, dict.fromkeys(columns, "rad")), "turn", "transmission error", title, "", orders)
+
+
+def _waves(found: TransmissionError, angle: Array) -> list[Array]:
+    """Return the significant orders of the input at an angle of it."""
+    own = [each for each in found.orders if each.significant and each.shaft == "input"]
+    return [each.amplitude * np.sin(each.order * angle + each.phase) for each in own]
+
+
+def picture_of_friction(fit: Fit, unit: str) -> Picture:
+    """Return the picture of friction over the speed of a log along its motion, means of what is left added to its law.
+
+    Args:
+        fit: of the log
+        unit: of the friction, N.m, or A if the torque constant is not known
+    """
+    part = fit.parts[0]
+    log, drive = part.experiment, part.model
+    assert isinstance(log, MotionLog)
+    rows = log.motion.rows
+    speed, left = log.motion.speed[rows], part.residuals[0] / per_torque(drive, log.effort)
+    load = np.abs(transmitted_torque(log, drive)[rows]) / abs(drive.gear.kinematics.ratio)
+    bins = [
+        each
+        for way in (-1.0, 1.0)
+        for each in np.array_split(np.flatnonzero(way * speed > 0.0)[np.argsort(speed[way * speed > 0.0])], SPEED_BINS)
+        if len(each)
+    ]
+    means = np.array([[float(np.mean(series[each])) for series in (speed, left, load)] for each in bins]).reshape(-1, 3).T
+    table = FrictionTable(np.abs(means[0]), np.zeros(len(bins)), load=means[2])
+    friction = np.sign(means[0]) * table.predict(drive.gear, [], np.zeros(0))[0][0]
+    columns = {"speed": means[0], "friction": friction + means[1], "modelled": friction}
+    units = {"speed": "rad/s", "friction": unit, "modelled": unit}
+    return Picture(Recording(columns, units), "table", "friction, at the input", "friction over speed")
+
+
+def picture_of_twist(fit: Fit) -> Picture:
+    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits."""
+    part = fit.parts[0]
+    log, gear = part.experiment, part.model.gear
+    assert isinstance(log, DrivenLog)
+    turned = log.angle / gear.kinematics.ratio - gear.kinematic_error.error(log.angle)
+    measured, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {
+        "torque": log.gear_torque(part.model),
+        "twist": measured - modelled.mean(),
+        "modelled": modelled - modelled.mean(),
+    }
+    units = {"torque": "N.m", "twist": "rad", "modelled": "rad"}
+    return Picture(Recording(columns, units), "loop", "twist, at the output", "twist over torque")
 
 
 def curves_of_shafts(fit: Fit) -> Recording:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.fitting.fit import Fit
@@ -15,13 +16,16 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
-Look = Literal["table", "loop", "series", "means"]
+Look = Literal["table", "loop", "series", "means", "turn"]
+Subject = Literal["torque", "friction", "twist", "error", ""]
+UNITS_OF_EFFORT = ("N.m", "A", "V")
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
@@ -34,7 +38,7 @@ def is_uncertain(value: float, sigma: float) -> bool:
 
 
 @dataclass(frozen=True)
-class FileEstimate:
+class FileEstimate(Presented):
     """Estimate of a parameter by one file.
 
     Attributes:
@@ -108,6 +112,9 @@ class FileEstimate:
         """True for an angle that begins anew with each turn, so that its size means nothing."""
         return "phase" in self.path.rpartition(".")[2]
 
+    def _headline(self) -> str:
+        return f"{self.label} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
+
 
 @dataclass(frozen=True, eq=False)
 class Picture(ComparedByFields):
@@ -119,6 +126,7 @@ class Picture(ComparedByFields):
         label: of the channel in words; its name if not given
         title: of the picture, if a file has several
         model: in words, if it is not that of the file
+        orders: of an error over a turn, each with its amplitude and the standard deviation of that
     """
 
     curves: Recording
@@ -126,10 +134,22 @@ class Picture(ComparedByFields):
     label: str = ""
     title: str = ""
     model: str = ""
+    orders: tuple[tuple[float, float, float], ...] = ()
+
+    @property
+    def subject(self) -> Subject:
+        """What an engineer looks for in it: torque over time, friction over speed, twist over torque, error over a turn."""
+        if self.look == "turn":
+            return "error"
+        if self.look == "loop":
+            return "twist" if "twist" in self.curves else ""
+        if self.look == "table":
+            return "friction"
+        return "torque" if self.look == "series" and self.curves.unit(self.curves.names[1]) in UNITS_OF_EFFORT else ""
 
 
 @dataclass(frozen=True, eq=False)
-class FileResult(ComparedByFields):
+class FileResult(ComparedByFields, Pictured):
     """Result of one file.
 
     Attributes:
@@ -150,6 +170,7 @@ class FileResult(ComparedByFields):
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
         bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
         between: the fit of the gear between both encoders; None without one
+        unchecked: numbers of the drive with which its estimates scale, and that nothing in it checks: their values, by name
     """
 
     name: str
@@ -169,6 +190,7 @@ class FileResult(ComparedByFields):
     fit: Fit | None = None
     bend: float = 0.0
     between: Fit | None = None
+    unchecked: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def fits(self) -> tuple[Fit, ...]:
@@ -211,3 +233,19 @@ class FileResult(ComparedByFields):
     def failed(self) -> tuple[Check, ...]:
         """Checks that failed."""
         return tuple(check for check in self.checks if check.failed)
+
+    def _headline(self) -> str:
+        if self.refused:
+            return f"{self.name}: {self.title}, NOT USED: {self.refused}"
+        failed = f", {counted(len(self.failed), 'check')} FAILED" if self.failed else ""
+        held_out = "" if self.held_out is None else f", {self.held_out._headline()}"
+        return f"{self.name}: {self.title}, {self.model}{held_out}{failed}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("file", self.name)
+        for each in self.estimates:
+            yield Row(each.label, each.value, each.unit, each.sigma, each.why)
+        if self.held_out is not None:
+            yield from self.held_out._rows()
+        for check in self.checks:
+            yield Row(check.name, check.value, check.unit, note=check._verdict())

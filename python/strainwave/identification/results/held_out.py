@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+
+from strainwave import typeset
+from strainwave.presentation import Presented, Row
+from strainwave.typeset import percent, quantity
 
 MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
@@ -12,8 +17,24 @@ MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted 
 MAX_IN_BAND = 0.01  # of what varies in the pass band
 
 
+def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
+    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of what varies.
+
+    Args:
+        error: root mean square of measured less predicted
+        unit: of all
+        varies: root mean square of the signal about its mean; not positive if it does not vary
+        plain: what plain least squares leaves; not a number without
+
+    >>> error_in_words(0.147, "A", 1.79, 0.185), error_in_words(8.3e-3, "N.m", 0.054)
+    ('0.147 A (plain least squares 0.185 A), 8.2 % of what varies', '8.3 mN·m, 15 % of what varies')
+    """
+    beside = f" (plain least squares {quantity(plain, unit)})" if np.isfinite(plain) else ""
+    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of what varies' if varies > 0.0 else ''}"
+
+
 @dataclass(frozen=True)
-class HeldOut:
+class HeldOut(Presented):
     """The error of a model over a contiguous stretch that its numbers were not fitted to: every sample, in the full band.
 
     Models were chosen by such stretches, this one among them, so that a new record has a somewhat larger error.
@@ -39,6 +60,11 @@ class HeldOut:
     in_band: float = np.nan
 
     @property
+    def words(self) -> str:
+        """The error in words, as `error_in_words`."""
+        return error_in_words(self.error, self.unit, self.zero, self.plain)
+
+    @property
     def relative(self) -> float:
         """Error over that of a model that predicts nothing [1]."""
         return self.error / self.zero if self.zero > 0.0 else np.inf
@@ -52,3 +78,14 @@ class HeldOut:
     def max_share_of_plain(self) -> float:
         """Limit of `share_of_plain` [1]."""
         return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
+
+    def _headline(self) -> str:
+        plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
+        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
+        if np.isfinite(self.plain):
+            yield Row("error of plain least squares", self.plain, self.unit)
+        yield Row("error of the mean", self.zero, self.unit)
+        yield Row("samples held out", self.samples)

@@ -23,7 +23,7 @@ SIGMA_OF_95_PERCENT = 1.959963984540054  # standard deviations about the mean th
 MAX_LOOP_POINTS = 600  # of a loop that are drawn
 MAX_INTERVALS = 2.5  # median intervals between two samples that a line joins
 MAX_BAND_BLOCKS = 200  # stretches of a band over time
-ABSCISSAE = {"twist": "twist", "small_angle": "angle of the input"}  # of loops, in words
+ANGLES = {"small_angle": "angle of the input"}  # of loops, in words
 
 
 def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
@@ -32,10 +32,28 @@ def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
     Returns:
         the upper axes, which have the labels of a legend
     """
-    whole: Axes
-    whole, left = figure.subplots(2, 1, sharex=picture.look != "loop", height_ratios=(2.2, 1.0))
-    _DRAWN[picture.look](whole, left, picture.curves, picture_label(picture))
+    if picture.look not in _RESIDUAL:
+        return draw_measured(figure, picture)
+    shared = picture.look != "loop"
+    whole, left = figure.subplots(2, 1, sharex=shared, height_ratios=(2.2, 1.0))
+    _MEASURED[picture.look](whole, picture)
+    if shared:
+        whole.set_xlabel("")
+    _RESIDUAL[picture.look](left, picture.curves)
+    if "held_out" in picture.curves:
+        x = picture.curves[picture.curves.names[0]] if shared else np.arange(1.0, len(picture.curves) + 1.0)
+        for axes in (whole, left) if shared else (left,):
+            marks.shade(axes, x, picture.curves["held_out"] > 0.0)
     return whole
+
+
+def draw_measured(figure: Figure | SubFigure, picture: Picture) -> Axes:
+    """Draw measured and modelled alone; of an error over a turn its orders, too. Return axes with labels."""
+    if picture.look == "turn":
+        return _turn(figure, picture)
+    axes: Axes = figure.subplots()
+    _MEASURED[picture.look](axes, picture)
+    return axes
 
 
 def pictures_figure(pictures: Sequence[Picture], title: str) -> Figure:
@@ -58,80 +76,116 @@ def picture_label(picture: Picture) -> str:
     return picture.label or picture.curves.names[1].replace("_", " ")
 
 
-def _table(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+def _table(axes: Axes, picture: Picture) -> None:
     """Draw torque over speed."""
-    order = table_points(whole, curves)
-    speed, torque = curves["speed"][order], curves.names[1]
-    residual = residual_of(curves)[order]
-    marks.residual_curve(left, speed, residual, LIGHT["ink"])
-    _bands(left, speed, residual, _sigma(curves, order))
-    marks.label_axes(whole, words, curves.unit(torque))
-    marks.label_axes(left, "measured − modelled", curves.unit(torque), "input speed", "rad/s")
+    torque = picture.curves.names[1]
+    table_points(axes, picture.curves)
+    marks.label_axes(axes, picture_label(picture), picture.curves.unit(torque), "input speed", "rad/s")
 
 
-def table_points(axes: Axes, curves: Recording) -> NDArray[np.intp]:
-    """Draw the rows of a table and the law, each direction by itself; return their order by speed."""
+def _table_residual(axes: Axes, curves: Recording) -> None:
+    order = np.argsort(curves["speed"], kind="stable")
+    speed, residual = curves["speed"][order], residual_of(curves)[order]
+    marks.residual_curve(axes, speed, residual, LIGHT["ink"])
+    _bands(axes, speed, residual, _sigma(curves, order))
+    marks.label_axes(axes, "measured − modelled", curves.unit(curves.names[1]), "input speed", "rad/s")
+
+
+def table_points(axes: Axes, curves: Recording) -> None:
+    """Draw the rows of a table and the law, each direction by itself."""
     order = np.argsort(curves["speed"], kind="stable")
     speed = curves["speed"][order]
     axes.plot(speed, curves[curves.names[1]][order], "o", color=LIGHT["measured"], label="measured", zorder=3)
     for side in (speed < 0.0, speed > 0.0):
         axes.plot(speed[side], curves["modelled"][order[side]], color=LIGHT["model"], label="model" if side[-1] else "")
     marks.speed_axis(axes, speed)
-    return order
 
 
 def loop_points(axes: Axes, curves: Recording) -> None:
-    """Draw the measured points of a loop, and the fitted loop in the order measured."""
-    over, torque = curves.names[:2]
+    """Draw the measured points of a loop over its torque, and the fitted loop in the order measured."""
     rows = np.unique(np.linspace(0, len(curves) - 1, MAX_LOOP_POINTS).astype(int))
-    x = curves[over][rows]
-    axes.plot(x, curves[torque][rows], "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
-    axes.plot(x, curves["modelled"][rows], color=LIGHT["model"], linewidth=0.9, label="model")
+    over, channel, modelled = (curves[name][rows] for name in (*curves.names[:2], "modelled"))
+    points, lines = ((over, channel), (over, modelled)) if curves.names[0] == "torque" else ((channel, over), (modelled, over))
+    axes.plot(*points, "o", color=LIGHT["measured"], markersize=3.0, alpha=0.5, label="measured")
+    axes.plot(*lines, color=LIGHT["model"], linewidth=0.9, label="model")
 
 
-def _loop(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
-    """Draw a loop; below, what is left in the order measured."""
-    over, torque = curves.names[:2]
-    loop_points(whole, curves)
+def _loop(axes: Axes, picture: Picture) -> None:
+    """Draw the angle over the torque."""
+    loop_points(axes, picture.curves)
+    torque, angle = sorted(picture.curves.names[:2], key=lambda name: picture.curves.unit(name) != "N.m")
+    side = picture_label(picture).removeprefix("torque").removeprefix("twist")
+    marks.label_axes(axes, f"{ANGLES.get(angle, angle.replace('_', ' '))}{side}", "rad", torque, "N.m")
+
+
+def _loop_residual(axes: Axes, curves: Recording) -> None:
+    """Draw what is left in the order measured."""
     point, residual = np.arange(1.0, len(curves) + 1.0), residual_of(curves)
-    marks.residual_curve(left, point, residual, LIGHT["ink"])
-    _bands(left, point, residual, _sigma(curves))
-    _held_out((left,), point, curves)
-    side = words.removeprefix("torque") if over == "twist" else ""
-    marks.label_axes(whole, words, curves.unit(torque), ABSCISSAE.get(over, over.replace("_", " ")) + side, "rad")
-    marks.label_axes(left, "measured − modelled", curves.unit(torque), "point compared, in the order measured", "1")
+    marks.residual_curve(axes, point, residual, LIGHT["ink"])
+    _bands(axes, point, residual, _sigma(curves))
+    marks.label_axes(axes, "measured − modelled", curves.unit(curves.names[1]), "point compared, in the order measured", "1")
 
 
-def _means(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+def _means(axes: Axes, picture: Picture) -> None:
     """Draw means of the friction over the temperature, and the line through all samples."""
-    over, channel = curves.names[:2]
-    celsius, residual = curves.values(over, "degC"), residual_of(curves)
-    whole.plot(celsius, curves[channel], "o", color=LIGHT["measured"], label="means of classes")
-    whole.plot(celsius, curves["modelled"], color=LIGHT["model"], label="line through all samples")
-    marks.residual_curve(left, celsius, residual, LIGHT["ink"])
-    _bands(left, celsius, residual, None)
-    marks.label_axes(whole, words, curves.unit(channel))
-    marks.label_axes(left, "means − line", curves.unit(channel), "temperature", "degC")
+    over, channel = picture.curves.names[:2]
+    celsius = picture.curves.values(over, "degC")
+    axes.plot(celsius, picture.curves[channel], "o", color=LIGHT["measured"], label="means of classes")
+    axes.plot(celsius, picture.curves["modelled"], color=LIGHT["model"], label="line through all samples")
+    marks.label_axes(axes, picture_label(picture), picture.curves.unit(channel), "temperature", "degC")
 
 
-def _series(whole: Axes, left: Axes, curves: Recording, words: str) -> None:
+def _means_residual(axes: Axes, curves: Recording) -> None:
+    celsius, residual = curves.values(curves.names[0], "degC"), residual_of(curves)
+    marks.residual_curve(axes, celsius, residual, LIGHT["ink"])
+    _bands(axes, celsius, residual, None)
+    marks.label_axes(axes, "means − line", curves.unit(curves.names[1]), "temperature", "degC")
+
+
+def _series(axes: Axes, picture: Picture) -> None:
     """Draw a channel over time, or over the angle if there is no time."""
+    curves = picture.curves
     over, channel = curves.names[:2]
-    x, unit, residual = curves[over], curves.unit(channel), residual_of(curves)
-    places, measured, modelled, rest = _broken(x, curves[channel], curves["modelled"], residual)
-    marks.curve(whole, places, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
+    x, measured, modelled = _broken(curves[over], curves[channel], curves["modelled"])
+    marks.curve(axes, x, measured, color=LIGHT["measured"], linewidth=2.4, alpha=0.6, label="measured")
     label = "orders found" if "residual" in curves else "model"
-    marks.curve(whole, places, modelled, color=LIGHT["model"], linewidth=0.9, label=label)
-    marks.residual_curve(left, places, rest, LIGHT["ink"])
-    _bands(left, x, residual, _sigma(curves))
-    _held_out((whole, left), x, curves)
-    marks.label_axes(whole, words, unit)
+    marks.curve(axes, x, modelled, color=LIGHT["model"], linewidth=0.9, label=label)
+    marks.label_axes(axes, picture_label(picture), curves.unit(channel), over.replace("_", " "), curves.unit(over))
+
+
+def _series_residual(axes: Axes, curves: Recording) -> None:
+    over, residual = curves.names[0], residual_of(curves)
+    marks.residual_curve(axes, *_broken(curves[over], residual), LIGHT["ink"])
+    _bands(axes, curves[over], residual, _sigma(curves))
     below = "left by orders and loads" if "residual" in curves else "measured − modelled"
-    marks.label_axes(left, below, unit, over.replace("_", " "), curves.unit(over))
+    marks.label_axes(axes, below, curves.unit(curves.names[1]), over.replace("_", " "), curves.unit(over))
 
 
-_DRAWN: dict[Look, Callable[..., None]] = {
+def _turn(figure: Figure | SubFigure, picture: Picture) -> Axes:
+    """Draw an error over a turn, and beside it the amplitude of each order with its interval of 95 %."""
+    curves = picture.curves
+    whole, bars = figure.subplots(1, 2, width_ratios=(1.4, 1.0))
+    over, channel = curves.names[:2]
+    degrees = np.rad2deg(curves[over])
+    whole.plot(degrees, curves[channel], "o", color=LIGHT["measured"], markersize=2.6, label="measured")
+    whole.plot(degrees, curves["modelled"], color=LIGHT["model"], label="model: its orders")
+    whole.set_xticks([0, 90, 180, 270, 360])
+    marks.label_axes(whole, "error", curves.unit(channel), "input angle", "deg")
+    order, amplitude, sigma = np.array(picture.orders).T
+    place = np.arange(len(order))
+    bars.bar(place, amplitude, color=LIGHT["model"], width=0.7)
+    bars.errorbar(place, amplitude, SIGMA_OF_95_PERCENT * sigma, fmt="none", ecolor=LIGHT["ink"], elinewidth=0.9)
+    bars.set_xticks(place, [f"{each:g}" for each in order])
+    marks.label_axes(bars, "orders", curves.unit(channel))
+    bars.set_xlabel("order")
+    return whole  # type: ignore[no-any-return]
+
+
+_MEASURED: dict[Look, Callable[[Axes, Picture], None]] = {
     "table": _table, "loop": _loop, "means": _means, "series": _series,
+}  # fmt: skip
+_RESIDUAL: dict[Look, Callable[[Axes, Recording], None]] = {
+    "table": _table_residual, "loop": _loop_residual, "means": _means_residual, "series": _series_residual,
 }  # fmt: skip
 
 
@@ -168,9 +222,3 @@ def _blocks(x: Array, half: Array) -> Iterator[tuple[float, float]]:
     """Yield the points of a band: of a long record the largest of each of many stretches."""
     for rows in np.array_split(np.arange(len(x)), min(len(x), MAX_BAND_BLOCKS)):
         yield float(np.mean(x[rows])), float(np.max(half[rows]))
-
-
-def _held_out(axes: Sequence[Axes], x: Array, curves: Recording) -> None:
-    if "held_out" in curves:
-        for each in axes:
-            marks.shade(each, x, curves["held_out"] > 0.0)

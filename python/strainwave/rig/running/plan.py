@@ -1,8 +1,9 @@
 """The cycle of a torsion test as a plan: what to lay on the pans and take off at each step.
 
-Document T's cycle has five stages: the peak, positive unloading, negative loading, negative unloading, positive loading. A pure
-couple needs the same mass on both pans of a pair, so that the torque has steps (erratum E-T6). Masses are laid on so that each
-step only adds or only takes off: whoever exchanges masses turns the shaft back and forth, and leaves the loop.
+The torsional stiffness article's cycle has five stages: the peak, positive unloading, negative loading, negative unloading,
+positive loading. A pure couple needs the same mass on both pans of a pair, so that the torque has steps (its erratum 6). Masses
+are laid on so that each step only adds or only takes off: whoever exchanges masses turns the shaft back and forth, and leaves
+the loop.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import Literal, NamedTuple, get_args
 from strainwave import arguments
 from strainwave.files.gear_file import at
 from strainwave.messages import one_line
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 
@@ -45,7 +47,7 @@ class PlannedStep(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plan:
+class Plan(Presented):
     """The steps of a torsion test, and what to do for each.
 
     Attributes:

@@ -160,8 +160,7 @@ def _check_tiles(picture: ImageFile) -> None:
 
 
 def _by_pillow(data: bytes, kind: str, tags: Tags) -> tuple[Grey, datetime | None]:
-    from PIL import Image as Pillow
-    from PIL import UnidentifiedImageError
+    from PIL import Image as Pillow, UnidentifiedImageError
 
     try:
         picture = Pillow.open(io.BytesIO(data), formats=[kind])

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.confirmed import refit

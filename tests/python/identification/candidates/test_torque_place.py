@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, one_speed
 from strainwave.identification.candidates.torque_place import NO_ROTOR, torque_place

@@ -57,7 +57,7 @@ def test_the_stiffness_of_another_size_fails_though_a_linear_spread_of_30_percen
 
 def test_numbers_are_compared_jointly() -> None:
     """Three numbers, each two and a half standard deviations off, are no chance."""
-    measured = sw.Entry("test bench", spread=0.2)
+    measured = sw.files.Entry("test bench", spread=0.2)
     paths = [f"gear.friction_input.{name}" for name in ("coulomb", "viscous")]
     start = SMALL.replace(sources={**SMALL.sources, **dict.fromkeys(paths, measured)})
     off = float(np.exp(2.5 * 0.2))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
+from strainwave.identification.checks.motion import ratio_by_orders
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
 
@@ -95,3 +96,25 @@ def test_a_load_that_changes_on_the_way_shows_in_the_halves() -> None:
     mixed = with_channel(light, "current", np.concatenate([light["current"][:half], heavy["current"][half:]]))
     message = failed(mixed)["halves of the record"]
     assert message.startswith("the halves of the motion have load.gravity_torque = ")
+
+
+@pytest.mark.parametrize("rows", [3_000, 300_000])
+def test_the_ratio_by_orders_takes_as_long_for_a_long_record(rows: int) -> None:
+    """Of 300 000 rows it took 2.1 s."""
+    time = np.linspace(0.0, 60.0, rows)
+    angle = 2.0 * np.sin(0.31 * time) + 0.5 * np.sin(0.83 * time)
+    speed = np.gradient(angle, time)
+    current = 0.3 * np.sign(speed) + 0.4 * speed + 3.0 * np.sin(angle) + 0.05 * np.cos(160.0 * angle)
+    columns = {"time": time, "output_angle": angle, "current": current + 0.02 * np.random.default_rng(0).standard_normal(rows)}
+    record = sw.Recording(columns, {"time": "s", "output_angle": "rad", "current": "A"})
+    (check,) = ratio_by_orders(sw.Drive(gear=sw.load("csg-20-100")), record, "log")
+    assert check.failed
+    assert "a ratio of 80 or 81" in check.message
+
+
+@pytest.mark.slow("identification")
+def test_a_log_of_current_names_what_none_of_its_checks_checks() -> None:
+    """A log of one encoder without a voltage."""
+    found = identify("hfuc-20-80", {"log": record(TRUTH, NOISE)}, mapping=FileMapping(constants={"torque_constant": 0.08}))
+    assert found.unchecked == {"ratio": "80", "torque constant": "0.08 N·m/A"}
+    assert any(each.startswith("one encoder checks neither the ratio, 80, nor") for each in found.files[0].remarks)

@@ -57,7 +57,7 @@ def test_a_table_from_the_joint_is_taken_as_said() -> None:
 
 def test_a_table_from_the_input_called_one_from_the_joint_is_asked_about() -> None:
     check = of_friction(table(SPEED, LAW.steady(SPEED)), "output").failed[-1]
-    assert check.remedy.startswith("if it was measured at the input, leave --side output out; ")
+    assert check.remedy.startswith("if it was measured at the input, give --side input; ")
 
 
 def test_millinewton_metres_called_newton_metres_are_named() -> None:

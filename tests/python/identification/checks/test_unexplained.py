@@ -86,7 +86,7 @@ def test_a_mistake_is_named_and_nothing_identified(mistake: str) -> None:
 
 
 def test_the_cause_that_comes_nearest_comes_first() -> None:
-    first, *_ = causes(scaled("output_angle", -1.0), drive())
+    first, *_ = causes(scaled("output_angle", -1.0), drive(), {})
     assert first.what == 'the sign of "output_angle" is reversed'
     assert first.recording == log()
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.identification.excitation.design import best, covariance_of, score, without_nuisances
 
 COULOMB = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
@@ -18,13 +17,13 @@ LAW = ["friction_input.coulomb", "friction_input.breakaway", "friction_input.str
 LINE = ["friction_input.coulomb", "friction_input.viscous"]
 
 
-def speeds(plan: sw.ExperimentPlan) -> list[float]:
+def speeds(plan: sw.identification.ExperimentPlan) -> list[float]:
     return [float(step.settings["input_speed_rad_s"]) for step in plan.steps for _ in range(step.repeats)]
 
 
-def friction_plan(gear: sw.Gear, wanted: list[str], **options: Any) -> sw.ExperimentPlan:
+def friction_plan(gear: sw.Gear, wanted: list[str], **options: Any) -> sw.identification.ExperimentPlan:
     told: dict[str, Any] = {"experiments": ["friction"], "speed_limit": 100.0, "lowest_speed": 0.5, "noise": {"friction": 1e-3}}
-    return sw.plan_experiments(gear, wanted, **told | options)
+    return sw.identification.plan_experiments(gear, wanted, **told | options)
 
 
 # The choice by itself
@@ -123,7 +122,7 @@ def test_what_friction_at_speed_cannot_tell_is_named() -> None:
     assert np.isinf(breakaway.after)
     assert "depends on it" in breakaway.why
     assert np.isfinite(plan["friction_input.coulomb"].after)
-    assert "not known" in plan.summary()
+    assert "not known" in str(plan)
 
 
 def test_steps_of_a_plan_state_what_each_determines_by_itself() -> None:
@@ -133,7 +132,7 @@ def test_steps_of_a_plan_state_what_each_determines_by_itself() -> None:
         "coulomb + 20 viscous = 0.026 ± 0.00071 N.m",
         "coulomb + 100 viscous = 0.05 ± 0.00071 N.m",
     ]
-    assert "determines by itself coulomb + 20 viscous = 0.026 ± 0.00071 N.m" in plan.summary()
+    assert "determines by itself coulomb + 20 viscous = 0.026 ± 0.00071 N.m" in str(plan)
     one = friction_plan(COULOMB, LINE, speed_limit=20.0, lowest_speed=19.99)["friction_input.viscous"]
     assert one.why.startswith("determined together with friction_input.coulomb: viscous + 0.05 coulomb = 0.0013")
 
@@ -153,9 +152,9 @@ SPRING = sw.Gear(
 )
 
 
-def loop_plan(wanted: list[str], **options: Any) -> sw.ExperimentPlan:
+def loop_plan(wanted: list[str], **options: Any) -> sw.identification.ExperimentPlan:
     told: dict[str, Any] = {"experiments": ["torsion"], "torque_limit": 60.0, "noise": {"torsion": 0.05, "input_torsion": 1e-3}}
-    return sw.plan_experiments(SPRING, wanted, **told | options)
+    return sw.identification.plan_experiments(SPRING, wanted, **told | options)
 
 
 def test_the_last_slope_of_a_spring_needs_a_loop_beyond_its_last_knee() -> None:
@@ -217,11 +216,15 @@ def test_a_fit_is_known_with_its_correlations() -> None:
 
 def test_spreads_and_ratings_of_a_set_count() -> None:
     gear_set = sw.GearSet.read("csg-25-100")
-    plan = sw.plan_experiments(gear_set, ["gear.stiffness.k2"], experiments=["friction", "torsion"], torque_limit=1e3)
+    plan = sw.identification.plan_experiments(
+        gear_set, ["gear.stiffness.k2"], experiments=["friction", "torsion"], torque_limit=1e3
+    )
     assert plan["gear.stiffness.k2"].before == pytest.approx(0.3 * 50e3)
     assert plan["gear.stiffness.k2"].after < 0.1 * plan["gear.stiffness.k2"].before
     assert all(float(step.settings["torque_N_m"]) <= 204.0 * (1 + 1e-12) for step in plan.steps)
-    fast = sw.plan_experiments(gear_set, ["gear.friction_input.viscous"], experiments=["friction"], speed_limit=1e4)
+    fast = sw.identification.plan_experiments(
+        gear_set, ["gear.friction_input.viscous"], experiments=["friction"], speed_limit=1e4
+    )
     assert max(speeds(fast)) == pytest.approx(3500.0 * np.pi / 30.0)
 
 
@@ -232,21 +235,21 @@ def test_a_run_that_breaks_a_limit_is_not_planned() -> None:
         "experiments": ["motion"], "unknown": ["gear.friction_input.coulomb"], "noise": {"input_angle": 1e-3, "current": 0.01},
         "commands": {"chirp": sw.scenario.chirp(1.0, 0.2, 2.0, 2.0)}, "time": 8.0,
     }  # fmt: skip
-    free = sw.plan_experiments(drive, ["load.inertia"], **told)
+    free = sw.identification.plan_experiments(drive, ["load.inertia"], **told)
     best = max(float(step.settings["share"]) for step in free.steps)
     fastest = np.abs(sw.simulate(drive, best * told["commands"]["chirp"], sample=2e-3)["input_speed"]).max()
-    bound = sw.plan_experiments(drive, ["load.inertia"], speed_limit=0.9 * fastest, **told)
+    bound = sw.identification.plan_experiments(drive, ["load.inertia"], speed_limit=0.9 * fastest, **told)
     assert max(float(step.settings["share"]) for step in bound.steps) < best
     assert bound["load.inertia"].after > free["load.inertia"].after
     with pytest.raises(ValueError, match="none of the commands keeps the limits"):
-        sw.plan_experiments(drive, ["load.inertia"], speed_limit=1e-3 * fastest, **told)
+        sw.identification.plan_experiments(drive, ["load.inertia"], speed_limit=1e-3 * fastest, **told)
 
 
 def test_expected_sigmas_of_a_run_are_those_of_fits_to_it() -> None:
     """Of a motor that swings its load without a controller, with noise on angle and current."""
     drive, command = sw.load("position-drive").replace(control=sw.control.OpenLoop(gain=1.0)), sw.scenario.sine(12.0, 4.0, 0.4)
     paths, noise = ["load.inertia", "gear.friction_input.viscous"], {"input_angle": 1e-3, "current": 0.02}
-    plan = sw.plan_experiments(
+    plan = sw.identification.plan_experiments(
         drive, paths, experiments=["motion"], unknown=paths, noise=noise, commands={"sine": command}, time=0.4
     )
     assert [step.settings["share"] for step in plan.steps] == [1.0]
@@ -296,7 +299,7 @@ def test_no_loop_is_planned_that_usual_sensors_do_not_resolve(name: str) -> None
     """Twenty steps of 1e-5 rad, and twenty times 0.2 % of the torque limit, whatever the noise of a sample averages to."""
     start = sw.GearSet.read(name)
     limit = min(60.0, start.ratings["peak_torque"].value) if "peak_torque" in start.ratings else 60.0
-    plan = sw.plan_experiments(
+    plan = sw.identification.plan_experiments(
         start, ["gear.stiffness", "gear.hysteresis"], experiments=["torsion"], torque_limit=limit, time=3600.0
     )
     assert amplitudes(plan, "output") + amplitudes(plan, "input")
@@ -309,12 +312,14 @@ def test_no_loop_is_planned_that_usual_sensors_do_not_resolve(name: str) -> None
 def test_a_coarse_encoder_moves_loops_to_larger_torques_and_to_the_other_side() -> None:
     told: dict[str, Any] = {"experiments": ["torsion"], "torque_limit": 60.0, "time": 3600.0}
     start = sw.GearSet.read("csg-20-100")
-    coarse = sw.plan_experiments(start, ["gear.stiffness"], resolution={"angle": 5e-5, "input_angle": 1e-2}, **told)
+    coarse = sw.identification.plan_experiments(
+        start, ["gear.stiffness"], resolution={"angle": 5e-5, "input_angle": 1e-2}, **told
+    )
     for amplitude in amplitudes(coarse, "output"):
         assert float(start.gear.twist([0.0, amplitude]).max()) >= 1e-3
     assert not any("resolution assumed" in note for note in coarse.notes)
     with pytest.raises(ValueError, match=r"no loop up to 60 N\.m has 20 times the resolution of its sensors"):
-        sw.plan_experiments(start, ["gear.stiffness"], resolution={"torque": 10.0, "input_torque": 0.1}, **told)
+        sw.identification.plan_experiments(start, ["gear.stiffness"], resolution={"torque": 10.0, "input_torque": 0.1}, **told)
 
 
 def test_noise_that_is_not_given_is_no_smaller_than_a_torque_sensor_resolves() -> None:
@@ -322,7 +327,7 @@ def test_noise_that_is_not_given_is_no_smaller_than_a_torque_sensor_resolves() -
     gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=0.0))
     told: dict[str, Any] = {"experiments": ["friction"], "unknown": [], "speed_limit": 100.0, "time": 40.0}
     ratio = abs(gear.kinematics.ratio)
-    plan = sw.plan_experiments(gear, ["friction_input.coulomb"], torque_limit=ratio, **told)
+    plan = sw.identification.plan_experiments(gear, ["friction_input.coulomb"], torque_limit=ratio, **told)
     assert plan["friction_input.coulomb"].after == pytest.approx(2e-3 / 2**0.5)
-    free = sw.plan_experiments(gear, ["friction_input.coulomb"], **told)
+    free = sw.identification.plan_experiments(gear, ["friction_input.coulomb"], **told)
     assert free["friction_input.coulomb"].after == pytest.approx(2e-4 / 2**0.5)

@@ -7,8 +7,7 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.identification.experiments.drive_log import DriveLog

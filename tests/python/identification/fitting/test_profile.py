@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.profile import profile
 
@@ -75,7 +74,9 @@ def test_an_unknown_that_the_fit_does_not_have_is_refused() -> None:
         profile(found, "damping")
 
 
-@pytest.mark.parametrize("verb", [lambda x: sw.profile(x, "damping"), sw.bootstrap, sw.combinations])
+@pytest.mark.parametrize(
+    "verb", [lambda x: sw.identification.profile(x, "damping"), sw.identification.bootstrap, sw.identification.combinations]
+)
 @pytest.mark.parametrize("other", [np.zeros(3), sw.Gear(), None], ids=["array", "gear", "nothing"])
 def test_what_is_no_fit_is_refused(verb: Any, other: Any) -> None:
     with pytest.raises(TypeError, match=r"^found must be a Fit, which sw\.fit returns, not "):

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave.files.entries import Entry, Quantity
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
@@ -49,11 +48,11 @@ def log(load: float, seed: int = 0) -> sw.Recording:
     return sw.Recording(columns, {name: run.unit(name) for name in run.names})
 
 
-def values(found: sw.Fit) -> dict[str, float]:
+def values(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.value for each in found.estimates}
 
 
-def sigmas(found: sw.Fit) -> dict[str, float]:
+def sigmas(found: sw.identification.Fit) -> dict[str, float]:
     return {each.path: each.sigma for each in found.estimates}
 
 
@@ -89,7 +88,7 @@ def test_what_each_record_has_for_itself_is_in_its_own_model() -> None:
     assert [part.model.friction_input.viscous for part in found.parts] == pytest.approx([9e-4, 4e-4], rel=1e-6)
     assert found.model == found.parts[0].model
     assert [part.name for part in found.parts] == ["record 1", "record 2"]
-    assert "residual of torque @ record 2" in found.summary()
+    assert "residual of torque @ record 2" in str(found)
     with pytest.raises(ValueError, match="the fit is to 2 records; take it from one of its parts"):
         _ = found.predicted
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.identification.fitting.unknowns import Unknown
 from strainwave.identification.fitting.waves import Waves
 

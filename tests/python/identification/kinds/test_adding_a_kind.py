@@ -46,5 +46,5 @@ def test_a_new_kind_needs_a_class_and_a_line(tmp_path: Path) -> None:
     page = identify_report(found)
     for expected in ("a pendulum held at rest", "Gravity torque", "Measured against modelled, held.csv"):
         assert expected in page
-    assert table_of(rank(found.start, recognise(file(tmp_path))))[1].startswith("a sine")
+    assert table_of(rank(found.start_set, recognise(file(tmp_path))))[1].startswith("a sine")
     assert identify("hfuc-20-80", {"weighing": file(tmp_path)}).parameters == found.parameters

@@ -53,7 +53,7 @@ def test_one_direction_does_not_separate_coulomb_friction_from_the_zero_of_the_t
     gear_set = GearSet.read(folder / "one" / "gear.toml")
     coulomb = gear_set.gear.friction_input.coulomb
     assert coulomb == pytest.approx(0.05 - 0.5 * CONSTANT, abs=1e-3)  # with the zero in it, as the input turns backward
-    assert gear_set.sources[COULOMB] == sw.Entry(f"fitted but not identified: {ONE_WAY}")
+    assert gear_set.sources[COULOMB] == sw.files.Entry(f"fitted but not identified: {ONE_WAY}")
     assert gear_set.sources[VISCOUS].source == "identified from one_way.csv"
     assert f"not identified: {COULOMB} {coulomb:.3g} N.m, one_way.csv: {ONE_WAY}" in " ".join(printed.split())
 

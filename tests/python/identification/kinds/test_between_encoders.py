@@ -26,7 +26,7 @@ def identified(folder: Path, noise: float) -> Identified:
     units = {"time": "s", "input_angle": "rad", "output_angle": "rad", "current": "A"}
     sw.Recording(columns, units).to_csv(folder / "log.csv")
     start = sw.GearSet.read("hfuc-20-50")
-    sources = {f"motor.{each['name']}": sw.Entry("measured", uncertainty=0.0) for each in TRUTH.motor.fields}
+    sources = {f"motor.{each['name']}": sw.files.Entry("measured", uncertainty=0.0) for each in TRUTH.motor.fields}
     return identify(start.replace(motor=TRUTH.motor, sources={**start.sources, **sources}), [folder / "log.csv"])
 
 

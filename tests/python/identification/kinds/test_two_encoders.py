@@ -14,7 +14,7 @@ SPEEDS = "10 to 60 1/min of the input"
 PATH = "gear.kinematic_error.amplitude[0]"
 
 
-def error() -> sw.TransmissionError:
+def error() -> sw.orders.TransmissionError:
     theta = 30.0 * np.sin(np.linspace(0.0, 6.0, 1000))
     output = theta / 100.0 - 3e-4 * np.sin(2 * theta) + np.random.default_rng(1).normal(0.0, 1e-5, len(theta))
     return sw.transmission_error(

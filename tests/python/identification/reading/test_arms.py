@@ -55,13 +55,16 @@ def test_one_joint_of_an_arm(
     is_joint(recognise(tmp_path / name, FileMapping(joint=joint)), seen, 1, effort)
 
 
+@pytest.mark.slow("identification")  # each of 28 answers is read
 def test_a_table_without_names_is_read_by_its_layout(tmp_path: Path, seen: dict[str, np.ndarray]) -> None:
     arms.headerless(tmp_path / "log.csv", seen)
     with pytest.raises(
         ValueError, match=r"column 1 is the time, columns 2 to 7 are the angle of joints, columns 8 to 13 "
     ) as refused:
         recognise(tmp_path / "log.csv")
-    assert options_of(refused.value)[:2] == ["--column joint_torque=block3", "--column current=block3"]
+    joints = [*map(str, range(1, 7)), "all"]
+    ways = [f"--joint {joint} --column {channel}=block3" for channel in ("joint_torque", "current") for joint in joints]
+    assert options_of(refused.value)[: len(ways)] == ways, "both questions are answered at once"
     is_joint(recognise(tmp_path / "log.csv", FileMapping(joint="2", columns={"current": "block3"})), seen, 1, "current")
     columns = {"time": "1", "output_angle": "3", "output_speed": "9", "current": "15"}
     is_joint(recognise(tmp_path / "log.csv", FileMapping(columns=columns)), seen, 1, "current")

@@ -7,8 +7,7 @@ from math import inf, nan
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.identification.reading.channels import CHANNELS
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.files.labels import label_of
 from strainwave.identification.reading.names import QUANTITIES, SIDES, UNITS, Meaning, meaning, words_of
 

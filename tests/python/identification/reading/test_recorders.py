@@ -184,7 +184,7 @@ def test_a_matrix_without_names(tmp_path: Path, interleaved: bool, first: str) -
         path.write_text(f"{begin},{first},{rest}")
     with pytest.raises(ValueError, match=r"columns 2(?: to 3|, 5) are the angle of joints") as asked:
         recognise(path)
-    assert options_of(asked.value)[0] == "--column joint_torque=block3"
+    assert options_of(asked.value)[0] == "--joint 1 --column joint_torque=block3"
     found = recognise(path, FileMapping(joint="1", columns={"joint_torque": "block3"}))
     rows = slice(1 if first else 0, None)
     check_joint(found, ANGLE[rows], TORQUE[rows], TIME[rows])

@@ -54,7 +54,7 @@ def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_prin
     saved, sources = found.gear_set, found.gear_set.sources
     for path, value in (("motor.inertia", saved.motor.inertia), ("load.inertia", saved.load.inertia)):
         assert value == both[path].value
-        assert sources[path] == sw.Entry("identified from both.csv", uncertainty=both[path].sigma)
+        assert sources[path] == sw.files.Entry("identified from both.csv", uncertainty=both[path].sigma)
     covariance = saved.covariance  # the friction is of another fit than the inertia of the load
     assert covariance is not None
     assert covariance.correlation("load.inertia", "gear.friction_input.viscous") == pytest.approx(0.0, abs=1e-9)

@@ -53,7 +53,7 @@ def test_what_was_measured_is_identified_and_near_the_truth(found: Identified) -
 
 
 def test_what_was_not_measured_is_kept_with_its_source(found: Identified) -> None:
-    start = found.start
+    start = found.start_set
     kept = {each.path: each for each in found.states if each.state == "kept"}
     assert kept["gear.input_inertia"].value == start.gear.input_inertia
     assert start.sources["gear.input_inertia"].source in kept["gear.input_inertia"].why
@@ -62,7 +62,7 @@ def test_what_was_not_measured_is_kept_with_its_source(found: Identified) -> Non
 
 def test_a_value_that_follows_from_a_fit_does_not_keep_its_old_source(found: Identified) -> None:
     path = "gear.friction_input.breakaway"
-    assert found.gear_set.gear.friction_input.breakaway != found.start.gear.friction_input.breakaway
+    assert found.gear_set.gear.friction_input.breakaway != found.start_set.gear.friction_input.breakaway
     assert "follows from the parameters fitted" in found.gear_set.sources[path].source
     state = next(each for each in found.states if each.path == path)
     assert (state.state, "follows from the parameters fitted" in state.why) == ("kept", True)

@@ -24,7 +24,7 @@ def table(scale: float = 1.0) -> sw.Recording:
 
 
 @pytest.fixture(scope="module")
-def log_fit() -> sw.Fit:
+def log_fit() -> sw.identification.Fit:
     run = sw.simulate(DRIVE, sw.scenario.sine(0.1, 1.0, 2.0), sample=2e-3)
     hum = 0.05 * np.sin(2.0 * np.pi * 50.0 * run.time)
     columns = {name: run[name] for name in ("time", "command", "output_angle")} | {"current": run["current"] + hum}
@@ -34,7 +34,7 @@ def log_fit() -> sw.Fit:
 
 
 @pytest.mark.slow("identification")
-def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_fit: sw.Fit) -> None:
+def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_fit: sw.identification.Fit) -> None:
     figure = log_fit.plot()
     assert figure.get_suptitle() == "Measured and predicted output angle and current"
     angle, angle_left, current, current_left = figure.axes
@@ -53,7 +53,7 @@ def test_a_fit_of_a_log_has_measured_predicted_and_residual_of_each_channel(log_
 
 
 @pytest.mark.slow("identification")
-def test_the_spectrum_of_a_residual_shows_what_the_model_lacks(log_fit: sw.Fit) -> None:
+def test_the_spectrum_of_a_residual_shows_what_the_model_lacks(log_fit: sw.identification.Fit) -> None:
     _, current = log_fit.plot_residual_spectrum().axes
     assert (current.get_title(loc="left"), current.get_xlabel()) == ("amplitude of current [A]", "frequency [Hz]")
     frequency, amplitude = (np.asarray(values) for values in current.lines[1].get_data())

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as some
+from hypothesis import given, settings, strategies as some
 from strainwave.identification.fitting.fit import fit
 from strainwave.identification.fitting.unknowns import Unknown
 from strainwave.identification.results.determined import friction_at, sizes_of

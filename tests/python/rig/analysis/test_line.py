@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.rig.analysis.line import fit_line
 
 # Pearson's data with York's weights, and the line that York et al. (2004), Table II, find.

@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import example, given, settings
-from hypothesis import strategies as st
+from hypothesis import example, given, settings, strategies as st
 from strainwave.rig import Loop, LoopAnalysis, analyse
 from strainwave.rig.analysis.lost_motion import drift
 from strainwave.rig.reading.recorded import read_loop

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from strainwave.rig import Loop, Value, analyse, friction_at_rest, referred, without_friction
 
 from tests.python.rig.loops import loop_of_table, parallelogram

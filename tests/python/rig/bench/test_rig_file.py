@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 import strainwave as sw
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from strainwave.rig.bench.rig_file import load, rigs, write_rig
 from strainwave.rig.bench.setup import Camera, Masses, Rig, Value
 

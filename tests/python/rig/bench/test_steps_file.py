@@ -8,8 +8,7 @@ from itertools import count
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import append_step, read_steps, write_steps
 

@@ -9,8 +9,7 @@ from contextlib import contextmanager
 from itertools import pairwise
 
 import pytest
-from hypothesis import assume, given
-from hypothesis import strategies as st
+from hypothesis import assume, given, strategies as st
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step

@@ -6,8 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.running.plan import plan

@@ -9,8 +9,7 @@ import re
 import numpy as np
 import pytest
 import strainwave as sw
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Cord, Masses, Rig, Value

@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from PIL import Image as Pillow
 from strainwave.rig.bench.setup import Camera
@@ -287,7 +286,9 @@ def test_files_that_cannot_be_read_are_faults_of_their_images(tmp_path: Path) ->
     (tmp_path / "b.png").write_bytes(b"")
     (tmp_path / "c.png").write_bytes((tmp_path / "a.png").read_bytes()[:3000])
     seen: list[str] = []
-    frames = measure_angles([tmp_path / f"{name}.png" for name in "abcd"], progress=seen.append).frames
+    frames = measure_angles(
+        [tmp_path / f"{name}.png" for name in "abcd"], progress=lambda name, share: seen.append(name)
+    ).frames
     assert frames[0].fault == ""
     assert frames[1].fault == 'cannot be read: "b.png" is empty'
     assert frames[2].fault.startswith('cannot be read: "c.png" is damaged: ')

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import changes_nothing, flat, in_picture, slopes_at

@@ -1,0 +1,89 @@
+"""The command `strainwave plan`: which measurements to make next."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from strainwave.commands.options import numeric
+from strainwave.number_texts import is_number, number_in
+
+
+def plan(
+    start: Annotated[
+        str, typer.Argument(help="A set by name, as hfuc-25-100, a gear file, or a data sheet: what is known so far.")
+    ],
+    want: Annotated[
+        list[str], typer.Option(help="A number to know, as gear.friction_input.viscous, or a part; repeat as needed.")
+    ],
+    experiment: Annotated[
+        list[str] | None, typer.Option(help="What can be made: friction, torsion; repeat as needed. Both, if not given.")
+    ] = None,
+    unknown: Annotated[
+        list[str] | None,
+        typer.Option(help="Parameters that are not known either; if not given, the ones in the same part as the wanted ones."),
+    ] = None,
+    noise: Annotated[
+        list[str] | None,
+        typer.Option(help="Standard deviation in SI units, as friction=0.002; also torsion, input_torsion. Repeat as needed."),
+    ] = None,
+    resolution: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle."
+        ),
+    ] = None,
+    minutes: Annotated[float, numeric("What all measurements may take together.")] = 30.0,
+    criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
+    speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
+    lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
+    torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
+) -> None:
+    r"""Rank candidate measurements by what they reach per minute.
+
+    Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
+    deviation of each wanted number before and after, and what would remain unknown, and why.
+
+    Examples:
+        strainwave plan csg-25-100 --want gear.friction_input
+        strainwave plan gear.toml --want gear.friction_input \
+          --speed-limit "3000 rpm"
+    """
+    from typing import Any
+
+    from strainwave.arguments import number, one_of
+    from strainwave.files.figure import quantity_of
+    from strainwave.files.gear_set import GearSet
+    from strainwave.identification.excitation.plan import plan_experiments as planned
+
+    def in_si(option: str, given: str | None, unit: str) -> float | None:
+        return None if given is None else quantity_of(option, given, unit, "command line").to(unit).value
+
+    chosen: Any = one_of("--criterion", criterion, ("A", "D"))
+    kinds = [one_of("--experiment", each, ("friction", "torsion")) for each in experiment or ("friction", "torsion")]
+    found = planned(
+        GearSet.read(start),
+        want,
+        experiments=kinds,
+        time=60.0 * number("--minutes", minutes, low=0.0),
+        criterion=chosen,
+        unknown=unknown,
+        speed_limit=in_si("--speed-limit", speed_limit, "rad/s"),
+        lowest_speed=in_si("--lowest-speed", lowest_speed, "rad/s"),
+        torque_limit=in_si("--torque-limit", torque_limit, "N.m"),
+        noise=_numbers("noise", "friction=0.002", noise or []),
+        resolution=_numbers("resolution", "angle=1e-5", resolution or []),
+    )
+    print(found)
+
+
+def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:
+    """Return the numbers of an option by their names."""
+    found = {}
+    for each in given:
+        name, _, value = each.partition("=")
+        if not is_number(value):
+            raise ValueError(f"--{option} {each}: write it as --{option} {example}")
+        found[name] = number_in(value)
+    return found

@@ -1,0 +1,1 @@
+from .faults import with_faults as with_faults

@@ -1,0 +1,20 @@
+from .actuator_ramp import (
+    LOOPS as LOOPS,
+    ActuatorRamp as ActuatorRamp,
+    in_series as in_series,
+    wave_generator as wave_generator,
+)
+from .current_orders import OrderLine as OrderLine, order_lines as order_lines
+from .inversion import COMBINE as COMBINE, MisalignmentEstimate as MisalignmentEstimate, displaced as displaced
+from .misalignment_sweep import (
+    BOTH_LOOPS as BOTH_LOOPS,
+    LOBES as LOBES,
+    SWEEPS as SWEEPS,
+    SweepLevels as SweepLevels,
+    level_lines as level_lines,
+    sweep_misalignment as sweep_misalignment,
+    swing as swing,
+    table_number as table_number,
+)
+from .recovery import RecoveryModel as RecoveryModel, corrected as corrected, recover as recover, refined as refined
+from .smallest_error import DetectionLimit as DetectionLimit, detection_limit as detection_limit

@@ -1,0 +1,2 @@
+from .cache import KernelWarning as KernelWarning
+from .compile import Compilation as Compilation

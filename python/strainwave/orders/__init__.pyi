@@ -1,0 +1,10 @@
+from .campbell_diagram import Campbell as Campbell, campbell as campbell
+from .order_spectrum import (
+    BearingOrders as BearingOrders,
+    Orders as Orders,
+    bearing_orders as bearing_orders,
+    order_amplitudes as order_amplitudes,
+    order_spectrum as order_spectrum,
+)
+from .torque_ripple import Ripple as Ripple, ripple as ripple
+from .two_encoders import TransmissionError as TransmissionError

@@ -1,0 +1,125 @@
+"""First screen of an identification: verdict, pictures that the files determine, numbers with their sources, next commands."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from strainwave.identification.identify import Identified
+from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.results.file_result import FileResult, Subject
+from strainwave.identification.results.parameter_state import ParameterState
+from strainwave.report import identify_figures as plots
+from strainwave.report.parameter_names import EFFECTS, effect_of, name_of, name_of_path
+from strainwave.typeset import number, uncertain, unit
+
+PREDICTED = ("log", "friction")  # kinds of files that `predict` compares
+NEEDED: dict[Subject, str] = {  # for a picture that the first screen lacks
+    "torque": "the torque or current of a drive in motion",
+    "friction": "torque at several speeds, best both ways, that separates friction from the rest",
+    "twist": "a torsion loop, or the angles of both shafts under a known torque that changes",
+    "error": "the angles of both shafts over a turn of the input, with an order that stands out",
+}
+LARGEST_TORQUE = "40"  # N.m, to begin with if the set has no rating (assumed)
+USUAL_GEAR = "csg-20-100"
+
+
+def pictures(found: Identified) -> Iterator[dict[str, Any]]:
+    """Yield the pictures of the first screen, in order: of each subject that of the first file that determines it."""
+    usable = sorted((each for each in found.files if not each.refused), key=lambda each: bool(each.failed))
+    for subject, title in plots.SUBJECTS.items():
+        own = ((file, picture) for file in usable for picture in file.pictures if picture.subject == subject)
+        if first := next(own, None):
+            yield {"title": title, "file": first[0].name, "svg": plots.panel(*first, f"first-{subject}")}
+
+
+def not_determined(found: Identified) -> list[tuple[str, str]]:
+    """Return the subjects without a picture, and what they need."""
+    shown = {picture.subject for file in found.files if not file.refused for picture in file.pictures}
+    return [(title, NEEDED[subject]) for subject, title in plots.SUBJECTS.items() if subject not in shown]
+
+
+def numbers_by_source(found: Identified) -> dict[str, list[tuple[str, str]]]:
+    """Return name and value of every number that files determine, and of one of each other effect, by their source."""
+    rows: dict[str, list[tuple[str, str]]] = {}
+    determined = set()
+    for each in found.parameters:
+        taken = each.estimate
+        determined.add(effect_of(taken.path))
+        source = each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files"
+        words = f"{uncertain(taken.value, taken.sigma)} {unit(taken.unit)}".strip()
+        rows.setdefault(f"from {source}", []).append((name_of(taken), words))
+    for effect in EFFECTS:
+        own = (each for each in found.states if each.state == "kept" and effect_of(each.path) == effect)
+        first = next((each for each in own if each.value and each.unit != "1"), None)
+        if effect not in determined and first is not None:
+            words = f"{_with_spread(first, found)} {unit(first.unit)}"
+            rows.setdefault(f"from the start set {found.start_set.name}", []).append((name_of_path(first.path), words))
+    return rows
+
+
+def _with_spread(kept: ParameterState, found: Identified) -> str:
+    entry = found.gear_set.sources.get(kept.path)
+    spread = entry.spread if entry is not None else None
+    return number(kept.value, 4) if spread is None else f"{number(kept.value, 4)} ± {number(100.0 * spread, 2)} %"
+
+
+def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
+    """Return what to do next, and the command that does it with the gear file and the file of this result.
+
+    Args:
+        found: the result
+        folder: that its files are written into
+    """
+    gear = folder / "gear.toml"
+    steps = [("See every number, and where it comes from", ["show", str(gear)])]
+    compared = next((each for each in found.files if _is_predicted(each, found)), None)
+    if compared is not None and compared.recognised is not None:
+        options = options_of(compared.recognised.mapping)
+        words = ["predict", str(gear), str(compared.recognised.path), *options]
+        steps.insert(0, ("Compare a later recording: its name in place of this one", words))
+    torque = [] if "peak_torque" in found.gear_set.ratings else ["--max-torque", LARGEST_TORQUE]
+    largest = f" (largest torque in place of {LARGEST_TORQUE} N·m)" if torque else ""
+    steps.append((f"Write the joint for MuJoCo and URDF{largest}", ["export", "joint", str(gear), *torque]))
+    if compared is None:
+        steps.append(
+            ("Compare it with a gear of the catalogue (strainwave list gears lists them)", ["compare", USUAL_GEAR, str(gear)])
+        )
+    return [(what, shlex.join(["strainwave", *words])) for what, words in steps]
+
+
+def next_lines(found: Identified, folder: Path) -> Iterator[str]:
+    """Yield what to do next, each with its command, in lines for a terminal."""
+    for what, command in next_commands(found, folder):
+        yield from (f"{what}:", f"  {command}")
+
+
+def _is_predicted(file: FileResult, found: Identified) -> bool:
+    """True if `predict` compares a file with the gear: a table, or a log of a joint whose load is known."""
+    read = file.recognised
+    if (
+        read is None
+        or file.refused
+        or file.part_of
+        or read.kind not in PREDICTED
+        or read.mapping.sign
+        or not read.path.is_file()
+    ):
+        return False
+    return bool(file.estimates) and (read.kind == "friction" or found.gear_set.load is not None)
+
+
+def options_of(mapping: FileMapping) -> list[str]:
+    """Return what a person states of a file as options of a command.
+
+    >>> options_of(FileMapping(columns={"speed": "3"}, constants={"torque_constant": 0.0755}, side="input"))
+    ['--column', 'speed=3', '--constant', 'torque_constant=0.0755', '--side', 'input']
+    """
+    tables: tuple[tuple[str, Mapping[str, Any]], ...] = (
+        ("--column", mapping.columns), ("--unit", mapping.units), ("--constant", mapping.constants),
+    )  # fmt: skip
+    words = [word for option, table in tables for name, value in table.items() for word in (option, f"{name}={value}")]
+    single = {"--side": mapping.side, "--joint": mapping.joint, "--kind": mapping.kind}
+    return words + [word for option, value in single.items() if value is not None for word in (option, value)]

@@ -1,0 +1,64 @@
+"""The verb `plan`: what it prints, and what it refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import strainwave as sw
+
+from tests.python.command import strainwave
+
+FRICTION = ("--want", "gear.friction_input", "--experiment", "friction")
+
+
+def test_the_plan_of_the_command_is_that_of_the_function(tmp_path: Path) -> None:
+    said = strainwave(
+        "plan", "csg-25-100", *FRICTION, "--noise", "friction=0.002", "--minutes", 8, "--speed-limit", "1000 rpm",
+        folder=tmp_path,
+    )  # fmt: skip
+    plan = sw.identification.plan_experiments(
+        sw.GearSet.read("csg-25-100"), ["gear.friction_input"], experiments=["friction"], noise={"friction": 2e-3}, time=480.0,
+        speed_limit=1000.0 * 3.141592653589793 / 30.0,
+    )  # fmt: skip
+    assert said.stdout == f"{plan}\n"
+    assert (said.returncode, said.stderr) == (0, "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
+    (tmp_path / "sheet.toml").write_text('name = "x"\n[datasheet]\nratio = -80\nsize = 20\npeak_torque = "96 N.m"\n')
+    said = strainwave("plan", "sheet.toml", "--want", "gear.stiffness", "--experiment", "torsion", folder=tmp_path)
+    assert said.returncode == 0
+    assert "± 96 N.m at the output" in said.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--want", "gear.x"), 'the model has no parameter "gear.x"'),
+        ((*FRICTION, "--noise", "friction"), "--noise friction: write it as --noise friction=0.002"),
+        ((*FRICTION, "--noise", "voltag=1"), "noise: voltag is none of"),
+        ((*FRICTION, "--resolution", "angle"), "--resolution angle: write it as --resolution angle=1e-5"),
+        ((*FRICTION, "--resolution", "turn=1"), "resolution: turn is none of torque, angle, input_torque, input_angle"),
+        ((*FRICTION, "--speed-limit", "2000"), '--speed-limit = "2000" has no unit; write it as "2000 rad/s"'),
+        ((*FRICTION, "--speed-limit", "2000 N.m"), '--speed-limit: cannot convert "N.m" to "rad/s"'),
+        ((*FRICTION, "--minutes", "-1"), "--minutes = -1.0 must lie in (0, inf)"),
+        (
+            ("--want", "gear.friction_input", "--experiment", "motion"),
+            '--experiment = "motion" must be one of friction, torsion',
+        ),
+        ((*FRICTION, "--criterion", "E"), '--criterion = "E" must be one of A, D'),
+        ((), "Missing option '--want'"),
+    ],
+)
+def test_what_makes_no_plan_is_refused_in_words_of_the_command(tmp_path: Path, options: tuple[str, ...], message: str) -> None:
+    said = strainwave("plan", "csg-25-100", *options, folder=tmp_path)
+    assert (said.returncode, said.stdout) == (2, "")
+    assert message in said.stderr
+    assert said.stderr.count("\n") == 1
+
+
+def test_a_limit_that_no_rating_states_is_asked_for(tmp_path: Path) -> None:
+    said = strainwave("plan", "hfuc-50-120", *FRICTION, folder=tmp_path)
+    assert said.stderr.startswith("strainwave: --speed-limit is needed for friction")
