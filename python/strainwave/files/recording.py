@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+LISTED_COLUMNS = 5  # in one line, and in the picture of a notebook
 GENERATED_TITLE = "simulation"  # first word of the titles that simulations give their recordings
 
 
@@ -139,9 +140,16 @@ class Recording(Pictured):
 
     def _headline(self) -> str:
         span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
-        series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        more = len(self.names) - LISTED_COLUMNS
+        series = ", ".join(f"{name} [{self.units[name]}]" for name in self.names[:LISTED_COLUMNS])
+        series += f" and {more} more" if more > 0 else ""
         title = f'"{self.title}": ' if self._heading else ""
         return f"{title}{len(self)} samples{span}; {series}"
+
+    def _picture(self) -> Figure | None:
+        """Return the figure of the first columns that change."""
+        changing = [name for name in self.names if name != "time" and np.ptp(self[name]) > 0.0]
+        return self.plot(changing[:LISTED_COLUMNS], self.names[0]) if changing else None
 
     def _rows(self) -> Iterator[Row]:
         for name, values in self.columns.items():
