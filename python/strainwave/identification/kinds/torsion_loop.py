@@ -98,6 +98,7 @@ class Torsion(Kind):
         if side == "output" and (stiffness := _series_stiffness(angle.si, torque.si)):
             torque = replace(torque, si=float(np.copysign(1.0, stiffness)) * torque.si)
             remarks += (_computed(angle, torque, stiffness),)
+            remarks += tuple(_why_unused(current) for current in measured(columns, "current"))
         return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
@@ -152,6 +153,14 @@ class Torsion(Kind):
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
             for each in found
         )
+
+
+def _why_unused(current: Column) -> str:
+    """Return why a current beside a spring behind the gear is not used."""
+    return (
+        f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for the "
+        "friction of the gear write time, the angle of the motor and the current to a file of their own"
+    )
 
 
 def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
