@@ -304,15 +304,14 @@ def influence(
     ] = None,
     out: Annotated[Path, folder("Folder for report.html.")] = Path("out/rig-influence"),
 ) -> None:
-    r"""Test a series of torsion loops for trends.
+    """Test a series of torsion loops for trends.
 
     Prints the dependence of area, width and stiffness on torque level, temperature, preload, ratio, modulus, cycles and hours,
     each with its 95 % interval and its probabilities.
 
     Examples:
-        strainwave rig influence --loop "cold.csv,temperature=5 degC" \
-          --loop "warm.csv,temperature=40 degC"
         strainwave rig influence --measured series.csv
+        strainwave rig influence --measured series.csv --out trends
     """
     from strainwave.files.writing import write_folder
     from strainwave.report.influence import influence_report, summary
