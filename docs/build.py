@@ -38,7 +38,7 @@ def gather() -> None:
         if path.endswith(".md") and path != "README.md":  # which is a page of the code host alone
             (SOURCE / page).parent.mkdir(parents=True, exist_ok=True)
             text = links.relinked((ROOT / path).read_text(encoding="utf-8"), path, pages)
-            (SOURCE / page).write_text(drawn.pictured(text, page), encoding="utf-8")
+            (SOURCE / page).write_text(drawn.pictured(listed.with_contents(text), page), encoding="utf-8")
     theory.write(SOURCE / "theory")
     tutorials.write(SOURCE / "tutorials")
     for path, page in pages.items():
@@ -48,7 +48,6 @@ def gather() -> None:
     api.write(SOURCE / "reference" / "api")
     cli_reference.write(SOURCE / "reference")
     gallery.write(SOURCE)
-    listed.write(SOURCE)
     catalogue_check.write(SOURCE / "reference" / "catalogue-check.md")
     drawn.draw(SOURCE)
 

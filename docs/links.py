@@ -44,7 +44,7 @@ def sections_of_laws() -> dict[str, str]:
 def reference() -> dict[str, str]:
     """Return the page of the API reference of the package and of each of its rooms."""
     rooms = {room: api.file_name(title) for room, title in api.PAGES.items()} | {name: name for name in api.MODULES}
-    names = {"__init__.py": "index"} | rooms
+    names = {"__init__.pyi": "index"} | rooms
     return {f"python/strainwave/{name}": f"reference/api/{page}.rst" for name, page in names.items()}
 
 

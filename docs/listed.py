@@ -1,6 +1,6 @@
 """Lists on pages that are computed: exports, formats of files, and the tables of contents that Sphinx wants.
 
-A page has a comment where a list goes.
+python docs/listed.py    writes the lists into the pages, between comments; a test compares them
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import strainwave as sw
 from strainwave.files.tables import LISTED
 
 CONTENTS = "<!-- contents: the pages above -->"
+TOCTREE = re.compile(r"^<!-- toctree\n(.*?)\n-->$", re.MULTILINE | re.DOTALL)  # which a code host does not show
 PAGE = re.compile(r"^[*-] \[[^\]]*\]\(([\w/-]+)\.md\)", re.MULTILINE)  # a page that a line of a list begins with
 
 
@@ -47,6 +48,7 @@ def title(page: Path) -> str:
     return page.read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
 
 
+END = "<!-- end of the list -->"
 LISTS: dict[str, Callable[[], str]] = {
     "<!-- all exports -->": exports,
     "<!-- pages of the exports -->": export_pages,
@@ -54,14 +56,21 @@ LISTS: dict[str, Callable[[], str]] = {
 }
 
 
-def write(source: Path) -> None:
-    """Replace each comment by its list, and last a comment of contents by a hidden table of the pages that the lists have."""
-    for page in source.rglob("*.md"):
-        text = before = page.read_text(encoding="utf-8")
-        for place, listed in LISTS.items():
-            if place in text:
-                text = text.replace(place, listed())
-        names = "\n".join(PAGE.findall(text))
-        text = text.replace(CONTENTS, f"```{{toctree}}\n:hidden:\n\n{names}\n```")
-        if text != before:
-            page.write_text(text, encoding="utf-8")
+def filled(text: str) -> str:
+    """Return a page with each list as it is computed now, between its comment and the one of its end."""
+    for place, listed in LISTS.items():
+        before, found, rest = text.partition(f"{place}\n")
+        if found:
+            text = f"{before}{found}\n{listed()}\n\n{END}{rest.partition(END)[2]}"
+    return text
+
+
+def with_contents(text: str) -> str:
+    """Return a page with tables of contents of Sphinx: that of the pages of its lists, and those in comments."""
+    names = "\n".join(PAGE.findall(text))
+    return TOCTREE.sub(r"```{toctree}\n\1\n```", text.replace(CONTENTS, f"<!-- toctree\n:hidden:\n\n{names}\n-->"))
+
+
+if __name__ == "__main__":
+    for page in Path(__file__).parent.rglob("*.md"):
+        page.write_text(filled(page.read_text(encoding="utf-8")), encoding="utf-8")

@@ -1,11 +1,11 @@
 """Torsion loops: which place loses how much, over load, speed and temperature.
 
-Document R, a review of dynamic models, names an open challenge: how much of a loop comes from the bearing of the wave
-generator, from the teeth, from the output bearing and from the flexspline, and what changes that. Here it is an experiment. A
-fixture holds the input, a torque winds the output to and fro. A meter separates the places by their energies, which a torque
-cell cannot do. Look at the shares: the output bearing has the largest in the smallest loops, that of the teeth grows with the
-load, and that of the wave generator grows with speed and cold, because of its thick oil. Numbers of friction and hysteresis
-are assumed.
+The review of dynamic models, a review of dynamic models, names an open challenge: how much of a loop comes from the bearing of
+the wave generator, from the teeth, from the output bearing and from the flexspline, and what changes that. Here it is an
+experiment. A fixture holds the input, a torque winds the output to and fro. A meter separates the places by their energies,
+which a torque cell cannot do. Look at the shares: the output bearing has the largest in the smallest loops, that of the teeth
+grows with the load, and that of the wave generator grows with speed and cold, because of its thick oil. Numbers of friction and
+hysteresis are assumed.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
 """How much of the "stochastic" kinematic error is random, and why it changes with the speed.
 
-Document R calls the part of the error that grows with the speed stochastic, and asks where it comes from. Here an encoder pair
-sees the error of teeth and bearing, noise that really is random but the same over the angle at every speed, and the twist that
-both excite. Look at the dashed line: orders near the eigenfrequency grow, orders far above it vanish. The resonance changes
-with the speed, not the noise. Numbers are assumed.
+The review of dynamic models calls the part of the error that grows with the speed stochastic, and asks where it comes from.
+Here an encoder pair sees the error of teeth and bearing, noise that really is random but the same over the angle at every
+speed, and the twist that both excite. Look at the dashed line: orders near the eigenfrequency grow, orders far above it vanish.
+The resonance changes with the speed, not the noise. Numbers are assumed.
 """
 
 import numpy as np

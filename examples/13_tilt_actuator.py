@@ -1,10 +1,10 @@
 """A misaligned gear in an actuator that tilts a nacelle: current and torque with and without the misalignment.
 
-The actuator of document A moves its nacelle by 90 degrees in 5 s, against the air stream. Its wave generator sits 10 um off the
-axis of the circular spline and leans by 0.05 degrees. Look at the current: its ripple comes twice per turn of the generator, at
-10.1 Hz, and near the end of the stroke it is about what the load makes of the error. Document A finds torques significantly
-greater than nominal: here the peak is 1 % greater, and 3 % with twice the misalignment.
-The gear is lumped: "tilt-actuator" has its stages, and shows the same.
+The actuator of the flight actuator paper moves its nacelle by 90 degrees in 5 s, against the air stream. Its wave generator
+sits 10 um off the axis of the circular spline and leans by 0.05 degrees. Look at the current: its ripple comes twice per turn
+of the generator, at 10.1 Hz, and near the end of the stroke it is about what the load makes of the error. The flight actuator
+paper finds torques significantly greater than nominal: here the peak is 1 % greater, and 3 % with twice the misalignment. The
+gear is lumped: "tilt-actuator" has its stages, and shows the same.
 """
 
 import numpy as np

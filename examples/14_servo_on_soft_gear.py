@@ -1,11 +1,11 @@
 """A servo on a soft gear: limit cycle and bandwidth over amplitude.
 
-Document T warns that low stiffness at a reversal of the torque may bring "instability, limit cycling, or reduced bandwidth".
-Here its gear, as the loop of Table 2 has it, carries an arm, and the position loop is closed on the arm. Look at the steps:
-after one of 0.3 degrees the arm rests, after one of 0.4 degrees it swings for ever by 0.69 degrees at 9.3 Hz. Such a limit
-cycle is foretold by the describing function. With a gear as stiff as in unloading there is none, nor with the loop on the
-motor. A slower loop attenuates large commands no more than small ones up to 6 Hz, and a peak appears; at 8 Hz its gain is not
-ordered by amplitude. Other numbers are assumed.
+The torsional stiffness article warns that low stiffness at a reversal of the torque may bring "instability, limit cycling, or
+reduced bandwidth". Here its gear, as the loop of Table 2 has it, carries an arm, and the position loop is closed on the arm.
+Look at the steps: after one of 0.3 degrees the arm rests, after one of 0.4 degrees it swings for ever by 0.69 degrees at 9.3
+Hz. Such a limit cycle is foretold by the describing function. With a gear as stiff as in unloading there is none, nor with the
+loop on the motor. A slower loop attenuates large commands no more than small ones up to 6 Hz, and a peak appears; at 8 Hz its
+gain is not ordered by amplitude. Other numbers are assumed.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ loop = sw.control.PositionSpeed(position_gain=40.0, speed_proportional=0.05, spe
 drive = sw.Drive(gear=gear, motor=motor, control=loop, load=arm)
 stiff = {"gear.hysteresis": sw.hysteresis.MaxwellSlip(), "gear.stiffness": sw.stiffness.Linear(k=4.51 * ratio**2)}
 on_motor = drive.replace({"control.feedback": "input"})
-drives = {"document T's gear": drive, "as stiff as its unloading": drive.replace(stiff), "loop on the motor": on_motor}
+drives = {"the article's gear": drive, "as stiff as its unloading": drive.replace(stiff), "loop on the motor": on_motor}
 
 
 def swinging(drive: sw.Drive, degrees: float) -> tuple[sw.Run, float, float]:
@@ -58,7 +58,7 @@ answers = {size: sw.analysis.frequency_response(slower, frequency, np.radians(si
 
 figure = Figure(figsize=(8.0, 8.5), layout="constrained")
 time, over, bode = figure.subplots(3, 1)
-for step, (run, _, _) in list(zip(steps, runs["document T's gear"], strict=True))[2:4]:
+for step, (run, _, _) in list(zip(steps, runs["the article's gear"], strict=True))[2:4]:
     time.plot(run.time, np.degrees(run["output_angle"]), label=f"step of {step:g} deg")
 for (name, each), mark in zip(swings.items(), "osx", strict=True):
     over.semilogx(steps, np.degrees(each[:, 0]), mark + "-", label=name)
@@ -68,7 +68,7 @@ for size, answer in answers.items():
     bode.semilogx(frequency, gain, ".-", label=f"{size:g} deg")
     least = gain[frequency < 7.0].min()
     print(f"command of {size:3g} deg: gain {least:.2f} or more below 7 Hz, at most {gain.max():.2f}; {gain[-1]:.2f} at 8 Hz")
-time.set(xlim=(0.0, 2.0), xlabel="time [s]", ylabel="angle of the arm [deg]", title="Steps of the loop on document T's gear")
+time.set(xlim=(0.0, 2.0), xlabel="time [s]", ylabel="angle of the arm [deg]", title="Steps of the loop on the article's gear")
 over.set(xlabel="step [deg]", ylabel="half swing left [deg]", title="What is left of a step after four seconds")
 bode.set(xlabel="frequency [Hz]", ylabel="arm over command [1]", title="A slower loop, by amplitude of the command")
 bode.set_xticks([0.5, 1.0, 2.0, 4.0, 8.0], ["0.5", "1", "2", "4", "8"])

@@ -1,10 +1,11 @@
 """A joint that sticks is moved by small angles with pulses of torque, and a soft gear always arrives from the same side.
 
-Above, document P's drive: its friction holds it, and a position loop without much gain leaves it there. A pulse of torque moves
-it by (tau - F) tau w^2 / 2 J F. Planned open loop, the friction that is not known is in the angle; measured at rest after each
-pulse, it is not. Look at the errors over a hundred drawn frictions. What is left is the jump of a load that breaks away. Below,
-document T's gear: a motor that is positioned exactly leaves the output on either branch of the loop, 59 degrees of the input
-apart; a path that overshoots by more than that leaves it on one. The friction of the outputs is assumed.
+Above, the position control article's drive: its friction holds it, and a position loop without much gain leaves it there. A
+pulse of torque moves it by (tau - F) tau w^2 / 2 J F. Planned open loop, the friction that is not known is in the angle;
+measured at rest after each pulse, it is not. Look at the errors over a hundred drawn frictions. What is left is the jump of a
+load that breaks away. Below, the article's gear: a motor that is positioned exactly leaves the output on
+either branch of the loop, 59 degrees of the input apart; a path that overshoots by more than that leaves it on one. The
+friction of the outputs is assumed.
 """
 
 import numpy as np
@@ -31,7 +32,7 @@ loop = sw.control.PositionSpeed(
 )
 targets = np.radians([0.0, 3.0, 6.0, 3.0])  # the second from below, the last from above
 paths, apart = {}, {}
-for name, gear, inertia in (("document T's gear", soft, 0.5), ("CSG-20-100", stiff, 0.05)):
+for name, gear, inertia in (("the article's gear", soft, 0.5), ("CSG-20-100", stiff, 0.05)):
     drive = sw.Drive(gear=gear, motor=sw.motor.TorqueSource(inertia=1e-4), control=loop, load=sw.loads.Inertia(inertia=inertia))
     lost = sw.tuning.lost_motion(gear)
     print(f"{name}: {np.degrees(lost.input_width):.2f} deg of the input wide, {np.degrees(lost.input_extent):.2f} deg in all")
@@ -49,10 +50,14 @@ for name, found in spreads.items():
     above.hist(1e6 * found.errors, bins, alpha=0.6, label=name)
 above.set(xlabel="error of the output [µrad]", ylabel="drives", title="1 mrad by pulses, with a hundred drawn frictions")
 for way in ("plain", "one side"):
-    path, run = paths["document T's gear", way]
+    path, run = paths["the article's gear", way]
     below.plot(run.time, np.degrees(run["output_angle"] - run["command"]), label=way)
     below.plot(path.rests, np.degrees(np.interp(path.rests, run.time, run["output_angle"]) - path.targets), "o", color="black")
-below.set(xlabel="time [s]", ylabel="output less command [deg]", title="Document T's gear; points: at rest at a target")
+below.set(
+    xlabel="time [s]",
+    ylabel="output less command [deg]",
+    title="The article's gear; points: at rest at a target",
+)
 for axes in (above, below):
     axes.legend()
 figure.savefig("pulse_positioning.png", dpi=110)

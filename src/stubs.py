@@ -17,8 +17,17 @@ from nanobind.stubgen import ReplacePattern, StubGen
 CORE = "strainwave._core"
 
 # Plain attributes carry no signature, and what Python adds is not the extension's own, so their types stand here.
+FORMS = """def to_dict(self) -> dict[str, Any]: ...
+def to_frame(self) -> Any: ...
+def _repr_html_(self) -> str: ...
+def _headline(self) -> str: ...
+def _rows(self) -> Any: ..."""
+PLOT = "def plot(self) -> Any: ..."
 ATTRIBUTES = {
-    r"\.Gear\.__suffix__$": "@staticmethod\ndef from_datasheet(ratio: float, **figures: Any) -> Gear: ...",
+    r"\.Gear\.__suffix__$": f"@staticmethod\ndef from_datasheet(ratio: float, **figures: Any) -> Gear: ...\n{FORMS}\n{PLOT}",
+    r"\.Drive\.__suffix__$": f"{FORMS}\n{PLOT}",
+    r"\.(__str__|__repr__|to_dict|to_frame|plot)$": "",  # of the package, where the build can import it
+    r"^strainwave\.[a-z]\w*\.[A-Z]\w*\.__suffix__$": FORMS,
     r"\.fields$": "fields: tuple[dict[str, Any], ...]",
     r"\.quantities$": "quantities: tuple[tuple[str, str, str], ...]",
     r"\.families$": "families: dict[str, dict[str, type[Any]]]",

@@ -69,7 +69,7 @@ _ = panels[0].legend(fontsize="small")
 # rest. Two laws cannot follow, and are too high at 5 to 50 rad/s.
 
 # %%
-print(fits["with a fall at low speed"].summary())
+print(fits["with a fall at low speed"])
 
 # %% [markdown]
 # ## 3. What a table does not separate

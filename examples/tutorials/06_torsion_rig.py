@@ -172,7 +172,7 @@ print(f"friction {mine.friction_input.coulomb:.4f} N.m found, {on_the_rig.fricti
 #
 # ## Where to go on
 #
-# * [Build and use a torsion test rig](../../docs/how-to/torsion-rig.md): what to build, cameras, uncertainty.
+# * [Torsion test: rig, test, analysis](../../docs/how-to/torsion-rig.md): what to build, cameras, uncertainty.
 # * [Analyse a torsion loop](../../docs/how-to/torsion-rig.md#analyse-a-torsion-loop): the definitions of
 #   stiffness, hysteresis and lost motion.
 # * [Simulate a joint](04_simulate_a_joint.py): what this gear does in a joint.

@@ -16,6 +16,8 @@ import lazy_loader
 try:
     import_module("strainwave._core")
 except Exception as error:  # in a clone also one of the build, which compiles what was edited
+    if isinstance(error.__cause__, KeyboardInterrupt):
+        raise error.__cause__ from None
     import sys
     import sysconfig
 
@@ -24,6 +26,7 @@ except Exception as error:  # in a clone also one of the build, which compiles w
         f"`source .venv/bin/activate` finds the tools for that; a wheel must be one for Python "
         f"{sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
     ) from None
+from strainwave import presented_models as _presented_models
 from strainwave._core import Gear
 
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
@@ -48,3 +51,4 @@ def from_datasheet(ratio: float, **figures: Any) -> Gear:
 
 Gear.from_datasheet = staticmethod(from_datasheet)  # type: ignore[method-assign]
 del from_datasheet
+_presented_models.present()

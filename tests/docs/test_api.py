@@ -82,3 +82,11 @@ def test_a_docstring_keeps_its_table_its_code_and_the_limits_of_its_parameters()
     assert "[rad/s], in (0, inf); required" in model
     assert "\\sigma_0 |v| z" in model  # a formula is not escaped
     assert "Attributes:" not in docstrings.model_text(sw.structure.Lumped)  # it has no parameters
+
+
+def test_the_page_of_the_reference_lists_every_function_of_a_task() -> None:
+    """A code host has no other list."""
+    text = (Path(__file__).resolve().parents[2] / "docs" / "reference" / "index.md").read_text(encoding="utf-8")
+    functions = [name for names in api.tasks().values() for name in names if name.rpartition(".")[2][0].islower()]
+    assert len(functions) > 30
+    assert [name for name in functions if f"`sw.{name.removeprefix('strainwave.')}`" not in text] == []

@@ -102,7 +102,7 @@ def _series(random: Generator, count: int) -> Array:
 
 def _check_fit(fit: sw.identification.Fit) -> None:
     _check_estimates(fit)
-    fit.summary()
+    str(fit)
     with warnings.catch_warnings(action="ignore"):
         assert fit.correlation.shape == fit.covariance.shape, "correlation of another shape"
 

@@ -311,18 +311,18 @@ def test_a_soft_reversal_swings_a_loop_on_the_output_alone(gallery: Callable[[st
     """After small steps all rest; after large ones the loop on the arm swings, with the soft gear only, whatever the step."""
     found = gallery("14")
     swings, large = found["swings"], found["steps"] >= 0.4
-    soft = swings["document T's gear"]
+    soft = swings["the article's gear"]
     assert (soft[~large, 0] < 1e-9).all()
     assert np.ptp(soft[large], axis=0) == pytest.approx([0.0, 0.0], abs=5e-3)
     assert soft[large, 0].min() > np.radians(0.5)
-    assert all((each[:, 0] < 1e-9).all() for name, each in swings.items() if name != "document T's gear")
+    assert all((each[:, 0] < 1e-9).all() for name, each in swings.items() if name != "the article's gear")
 
 
 def test_the_limit_cycle_is_about_that_of_the_describing_function(gallery: Callable[[str], dict[str, Any]]) -> None:
     """A describing function leaves harmonics out: a tenth of amplitude and frequency is what it is usually good for."""
     found = gallery("14")
-    run = found["runs"]["document T's gear"][-1][0].between(4.0, 6.0)
-    twist, rate = 0.5 * np.degrees(np.ptp(run["twist"])), found["swings"]["document T's gear"][-1, 1]
+    run = found["runs"]["the article's gear"][-1][0].between(4.0, 6.0)
+    twist, rate = 0.5 * np.degrees(np.ptp(run["twist"])), found["swings"]["the article's gear"][-1, 1]
     assert found["foretold"] == pytest.approx([twist, rate], rel=0.12)
 
 
@@ -363,7 +363,7 @@ def test_pulses_and_paths_reach_where_friction_and_lost_motion_leave(gallery: Ca
     found = gallery("18")
     planned, measured = found["spreads"]["planned"], found["spreads"]["measured"]
     assert measured.median_error < 0.5 * 2.0 * (0.186984 - 0.18) / 150.0 < planned.median_error
-    for name in ("document T's gear", "CSG-20-100"):
+    for name in ("the article's gear", "CSG-20-100"):
         assert found["apart"][name, "plain"] == pytest.approx(-1.0, abs=0.03)
         assert abs(found["apart"][name, "one side"]) < 0.002
 

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted, shortened
+from strainwave.presentation import Statement
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Agreement:
+class Agreement(Statement):
     """Agreement of a column of one recording with that of another.
 
     Attributes:
@@ -44,7 +45,7 @@ class Agreement:
     correlation: float | None
     samples: int
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         """The agreement in one line."""
         related = "one is constant" if self.correlation is None else f"correlation {self.correlation:.6g}"
         sizes = f"rms {self.rms:.4g} {self.unit}, largest {self.largest:.4g} {self.unit} at t = {self.time:.4g} s"

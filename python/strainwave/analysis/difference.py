@@ -12,12 +12,13 @@ from strainwave._core import Gear
 from strainwave.files.described import parameters, parts
 from strainwave.files.gear_file import at
 from strainwave.files.gear_set import GearSet
+from strainwave.presentation import Statement
 
 Model: TypeAlias = Gear | Drive | GearSet
 
 
 @dataclass(frozen=True)
-class Difference:
+class Difference(Statement):
     """A place where two models differ.
 
     Attributes:
@@ -54,7 +55,7 @@ class Difference:
         change = (self.second - self.first) / self.first
         return change if isfinite(change) else None
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         """The difference in one line."""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
         first, second = (text if value is None else text + unit for text, value in zip(self.texts, self._values, strict=True))

@@ -10,11 +10,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, arguments
+from strainwave import Drive, Gear, arguments, typeset
 from strainwave.analysis.output_torque import check_static
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.units import convert
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ MAX_LOAD = 1e9  # N.m
 
 
 @dataclass(frozen=True)
-class ErrorBound:
+class ErrorBound(Presented):
     """A part of the positioning error.
 
     Attributes:
@@ -48,6 +49,10 @@ class ErrorBound:
     typical: float
     bound: float
     why: str
+
+    def _headline(self) -> str:
+        typical, bound = (typeset.quantity(each, "rad") for each in (self.typical, self.bound))
+        return f"{self.name}: typically {typical}, at most {bound}"
 
 
 def positioning_error(gear: GearSet | Drive | Gear | str | Path, *, load: float | None = None) -> tuple[ErrorBound, ...]:

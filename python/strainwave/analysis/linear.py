@@ -21,6 +21,7 @@ from strainwave.analysis.continuous import continuous, state_within
 from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
+from strainwave.presentation import Pictured, Row, counted
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.memory import room_for
 from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
@@ -41,7 +42,7 @@ _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothin
 
 
 @dataclass(frozen=True, eq=False)
-class Linearisation(ComparedByFields):
+class Linearisation(ComparedByFields, Pictured):
     """Linear model of a drive about a state: matrices A, B, C, D for n states, 4 inputs and m outputs.
 
     Unpacks to the four matrices, which have no names: ``control.StateSpace(*linear, **linear.labels)`` of python-control keeps
@@ -185,6 +186,23 @@ class Linearisation(ComparedByFields):
         states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
         answer: Complex = states @ self.C[row] + d[..., 0]
         return answer
+
+    def _headline(self) -> str:
+        unstable = int((self.poles.real > 0.0).sum())
+        verdict = counted(unstable, "unstable pole") if unstable else "stable"
+        return f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs, {verdict}"
+
+    def _rows(self) -> Iterator[Row]:
+        seen = [
+            each for each in zip(self.poles, self.eigenfrequencies, self.damping_ratios, strict=True) if each[0].imag >= 0.0
+        ]
+        for number, (pole, frequency, damping) in enumerate(seen, start=1):
+            kind = "vibration" if pole.imag else "real pole"
+            yield Row(f"frequency of mode {number}", float(frequency), "rad/s", note=kind)
+            yield Row(f"damping ratio of mode {number}", float(damping), "1")
+
+    def _remarks(self) -> Iterator[str]:
+        return iter(self.notes)
 
 
 def linearise(

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from strainwave import Drive
 from strainwave.analysis.agreement import Agreement
 from strainwave.analysis.compare import compare
 from strainwave.files.recording import Recording
+from strainwave.presentation import Pictured, Row
 from strainwave.simulation.run import Run, simulate
 from strainwave.simulation.scenario import table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SAMPLE_TIME = 1e-3  # s
 MIN_ROWS = 2  # of a run: its command is a line between them
 
 
 @dataclass(frozen=True)
-class MeasuredCommand:
+class MeasuredCommand(Pictured):
     """A measured run of a drive from rest under a command of the output angle.
 
     Attributes:
@@ -57,3 +63,13 @@ class MeasuredCommand:
     def agreement(self, drive: Drive) -> Agreement:
         """Return how far the output angle of a drive is from the measured one."""
         return compare(self.recording.select(["time", "output_angle"]), self.run(drive))[0]
+
+    def _headline(self) -> str:
+        return self.recording._headline()
+
+    def _rows(self) -> Iterable[Row]:
+        return self.recording._rows()
+
+    def plot(self) -> Figure:
+        """Return the figure of its recording."""
+        return self.recording.plot()

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, Gear, arguments, structure, variation
+from strainwave import Drive, Gear, arguments, structure, typeset, variation
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.parameters import every
+from strainwave.presentation import Pictured
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -19,7 +24,7 @@ USED = ("gear.stiffness.", "gear.hysteresis.", "gear.kinematic_error.", "gear.da
 
 
 @dataclass(frozen=True, eq=False)
-class OutputTorque(ComparedByFields):
+class OutputTorque(ComparedByFields, Pictured):
     """Torque of the output, as a gear transmits it.
 
     Attributes:
@@ -39,6 +44,19 @@ class OutputTorque(ComparedByFields):
     torque: Array
     sigma: Array
     twist: Array
+
+    def _headline(self) -> str:
+        low, high = (typeset.quantity(float(end), "N.m") for end in (self.torque.min(), self.torque.max()))
+        return f"{len(self.torque)} samples, {low} to {high}"
+
+    def plot(self) -> Figure:
+        """Return a figure of the torque over the samples, with the band of 95 % by the covariance of the gear."""
+        from strainwave.drawing.simple import Series, curve_figure
+
+        place = np.arange(float(len(self.torque)))
+        return curve_figure(
+            "Torque of the output", Series("sample", "1", place), Series("torque", "N.m", self.torque), self.sigma
+        )
 
 
 def output_torque(

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, _core, arguments, typeset
 from strainwave.analysis.steady import averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.messages import listed, quoted
 from strainwave.native import kernels
+from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
@@ -38,7 +39,7 @@ _SINES = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse(ComparedByFields):
+class FrequencyResponse(ComparedByFields, Pictured):
     """Response of a drive to a sine of some amplitude, in periodic motion.
 
     ``answer["output_angle"]`` is the response of that output: amplitude and phase of its first harmonic over those of the
@@ -95,6 +96,18 @@ class FrequencyResponse(ComparedByFields):
         if arguments.text("the name of an output", output) not in self.responses:
             raise ValueError(f"no output {quoted(output)}; there are {listed(self.responses)}")
         return self.responses[output]
+
+    def _headline(self) -> str:
+        low, high = (typeset.quantity(float(end), "Hz") for end in (self.frequency.min(), self.frequency.max()))
+        size = typeset.quantity(self.amplitude, self.units[self.input])
+        return f"{len(self.responses)} outputs to a sine of {self.input} of {size}, {low} to {high}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name, response in self.responses.items():
+            size = np.abs(response)
+            unit = ratio_of_units(self.units[name], self.units[self.input])
+            worst = typeset.number(100.0 * float(self.distortions[name].max()), 3)
+            yield Row(name, (float(size.min()), float(size.max())), unit, note=f"distortion up to {worst} %")
 
 
 def frequency_response(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import parameters as chosen
+from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, Excitation
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.run import differentiate
@@ -35,7 +36,7 @@ NO_MEASURE = {
 
 
 @dataclass(frozen=True, eq=False)
-class Derivatives(ComparedByFields):
+class Derivatives(ComparedByFields, Pictured):
     """A run, and the derivatives of its outputs by some parameters.
 
     Attributes:
@@ -110,8 +111,14 @@ class Derivatives(ComparedByFields):
     def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
         return Derivatives, (self.run, dict(self.parameters), dict(self.numbers), self.values)
 
-    def __repr__(self) -> str:
-        return f"<Derivatives of {len(self.run)} samples by {', '.join(self.parameters)}>"
+    def _headline(self) -> str:
+        return f"{len(self.run)} samples by {', '.join(self.parameters)}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name in self.run.names:
+            if name != "time":
+                for path, change in self.effects(name).items():
+                    yield Row(f"{name} by {path}", change, self.run.unit(name), note="rms, by + 1 %")
 
 
 def derivatives(

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from strainwave.commands.options import Drive, folder
-from strainwave.commands.progress import progress
 
 
 def compensate(
@@ -42,13 +41,11 @@ def compensate(
     from strainwave.report.provenance import Provenance
     from strainwave.tuning.compensate import compensate as compensated
 
-    with progress(None) as turn:
-        found = compensated(
-            GearSet.read(drive), goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed,
-            torque=torque, members=members, seed=seed, progress=turn,
-        )  # fmt: skip
-        turn("report")
-        files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
-        write_folder(out, files)
+    found = compensated(
+        GearSet.read(drive), goal=goal, period=period, delay=delay, encoder=encoder, travel=travel, speed=speed,
+        torque=torque, members=members, seed=seed,
+    )  # fmt: skip
+    files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
+    write_folder(out, files)
     print(compensate_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")

@@ -175,7 +175,7 @@ class _Progress:
     def __init__(self) -> None:
         self.last = time.monotonic()
 
-    def __call__(self, line: str) -> None:
+    def __call__(self, line: str, share: float) -> None:
         if sys.stderr.isatty() or time.monotonic() - self.last >= QUIET_SECONDS:
             self.last = time.monotonic()
             print(f"strainwave: {line}", file=sys.stderr, flush=True)

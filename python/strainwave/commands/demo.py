@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 from strainwave.commands.options import folder
-from strainwave.commands.progress import progress
+from strainwave.progress import in_turn
 
 OWN_LOG = """\
 Your own log: name its gear, or one of its size and ratio (strainwave list gears), and the torque constant of the motor:
@@ -30,7 +30,7 @@ def demo(out: Annotated[Path, folder("Folder for the results.")] = Path("out/dem
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
 
-    with progress() as turn:
+    with in_turn(None) as turn:
         for name, shown in DEMONSTRATIONS.items():
             turn(name.replace("-", " "))
             result, folder = shown.identified(), out / name

@@ -14,8 +14,8 @@ from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.help import Verbs
 from strainwave.commands.misalignment import misalignment
 from strainwave.commands.options import Drive, folder, numeric, with_groups
-from strainwave.commands.progress import progress
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
+from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS, QuestionError
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def joint(
     ] = False,
     out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
 ) -> None:
-    """Diagnose a joint from its torque or motor current.
+    r"""Diagnose a joint from its torque or motor current.
 
     Each order of the gear is compared with noise, and with the healthy joint. Without a baseline lines are compared with noise
     and with the expected values of the gear alone. A recording without an alarm is no proof of health: the report contains the
@@ -71,7 +71,8 @@ def joint(
 
     Examples:
         strainwave diagnose joint robot_log.csv --gear hfuc-20-80
-        strainwave diagnose joint robot_log_later.csv --gear gear.toml --baseline robot_log.csv
+        strainwave diagnose joint robot_log_later.csv --gear gear.toml \
+          --baseline robot_log.csv
     """
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.source import distinct_names, measurement_files
@@ -91,7 +92,7 @@ def joint(
     question = replace(question, hours=by_name, ramp_drive=question.gear_set if geometry else None)
     mapping = given.mapping_of(opened)
     read = [*paths_in(files), *paths_in(healthy)]
-    with progress() as turn:
+    with in_turn(None) as turn:
         joints = _joints(files, mapping) if given.joint == ALL_JOINTS else (given.joint,)
         found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
@@ -124,8 +125,8 @@ def limit(
 
     Examples:
         strainwave diagnose limit robot-joint --speed 20 --duration 10 --noise 0.05
-        strainwave diagnose limit tilt-actuator --speed 30 --duration 20 --noise 0.05 \
-          --torque 20 --order 2
+        strainwave diagnose limit tilt-actuator --speed 30 --duration 20 \
+          --noise 0.05 --torque 20 --order 2
     """
     from strainwave.commands.options import number_option
     from strainwave.diagnose.smallest_error import detection_limit
@@ -138,7 +139,7 @@ def limit(
     record = PlannedRecord(model.name, speed, torque, duration, rate, noise)
     orders = [number_option(each) for each in order or []] or list(PLANNED_ORDERS)
     whole, limits = model.drive, []
-    with progress(len(orders)) as turn:
+    with in_turn(None, len(orders)) as turn:
         for one in orders:
             turn(f"order {one:g}")
             limits.append(

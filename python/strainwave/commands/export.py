@@ -105,8 +105,9 @@ def verb_of(form: Form) -> Any:
     verb.__signature__ = signature(verb).replace(parameters=parameters)  # type: ignore[attr-defined]
     verb.__annotations__ = {each.name: each.annotation for each in parameters}
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+    torque = " --max-torque 40" if "max_torque" in meanings else ""  # an identified gear may have no rating
     words = " ".join(["", *(EXAMPLE_WORDS[each.name] for each in options if each.default is Parameter.empty)])
-    examples = [f"    strainwave export {form.verb} {model}{words}" for model in ("robot-joint", "gear.toml")]
+    examples = [f"    strainwave export {form.verb} {model}{words}" for model in ("robot-joint", f"gear.toml{torque}")]
     alone.command(form.verb, help="\n".join([summary, "\nExamples:", *examples]))(verb)
     return typer.main.get_command(alone)
 

@@ -57,7 +57,7 @@ class FileOptions:
             ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
         """
         from strainwave.identification.reading.channels import ALIASES, CHANNELS
-        from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+        from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
         from strainwave.identification.reading.source import measurement_file
 
         side: Any = self.side
@@ -74,7 +74,6 @@ class FileOptions:
                 )
         units = pairs("--unit", self.unit, channels | names)
         constants = pairs("--constant", self.constant, set(CONSTANTS))
-        numbers = {name: constant_of(name, value) for name, value in constants.items()}
         from_file = MappingFile.read(self.mapping) if self.mapping is not None else None
         opened = {file.path: file for file in files}
 
@@ -82,7 +81,7 @@ class FileOptions:
             file = opened.get(path) or measurement_file(path)
             own = {channel: column for channel, column in columns.items() if _has(file, column)}
             of_it = {name: unit for name, unit in units.items() if name in channels or name in file.names}
-            given = FileMapping(own, of_it, constants=numbers, side=side, joint=self.joint, kind=self.kind)
+            given = FileMapping(own, of_it, constants=constants, side=side, joint=self.joint, kind=self.kind)
             return from_file.of(path).updated(given) if from_file is not None else given
 
         return of

@@ -11,7 +11,7 @@ import typer
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
 from strainwave.commands.options import folder, with_groups
-from strainwave.commands.progress import progress
+from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS
 
 if TYPE_CHECKING:
@@ -72,11 +72,9 @@ def _one_gear(
     from strainwave.report.provenance import Provenance
 
     read = paths_in(opened)
-    with progress(len(read)) as turn:
-        found = identified(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
-        turn("report")
-        files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
-        write_folder(out, files)
+    found = identified(gear, opened, mapping=mapping, accept=accept, name=name)
+    files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
+    write_folder(out, files)
     print("\n".join(identify_summary(found)))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     if "gear.toml" in files:
@@ -94,7 +92,7 @@ def _ranking(gear: str, opened: MeasurementFiles, mapping: Callable[[Path], File
     from strainwave.identification.rank import rank, table_of
     from strainwave.identification.reading.recognise import Recognised
 
-    with progress(len(opened.files)) as turn:
+    with in_turn(None, len(opened.files)) as turn:
         read, start = read_measurements(opened, mapping, GearSet.read(gear))
         for path, file in read.items():
             turn(path.name)
@@ -116,15 +114,11 @@ def _every_joint(
     from strainwave.report.joints import folder_of, joints_files, joints_summary
     from strainwave.report.provenance import Provenance
 
-    with progress() as turn:
-        joints = identify_joints(gear, opened, mapping=mapping, accept=accept, name=name, progress=turn)
-        turn("report")
-        provenance = Provenance.of_this_command(paths_in(opened))
-        for joint, found in joints.found.items():
-            write_folder(
-                out / folder_of(joint), identify_files(found, provenance, accepted=accept, folder=out / folder_of(joint))
-            )
-        write_folder(out, joints_files(joints, provenance))
+    joints = identify_joints(gear, opened, mapping=mapping, accept=accept, name=name)
+    provenance = Provenance.of_this_command(paths_in(opened))
+    for joint, found in joints.found.items():
+        write_folder(out / folder_of(joint), identify_files(found, provenance, accepted=accept, folder=out / folder_of(joint)))
+    write_folder(out, joints_files(joints, provenance))
     print("\n".join(joints_summary(joints)))
     folders = ", ".join(map(folder_of, joints.found))
     print(f"\nwrote {out / 'report.html'}, and beside it joints.csv and the results of each joint in {folders}")

@@ -23,22 +23,22 @@ def misalignment(
 
     Examples:
         strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 1
-        strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 2 --out slow
+        strainwave diagnose misalignment tilt-actuator-lumped --stroke 20 --time 2
     """
     from itertools import product
     from math import radians
 
-    from strainwave.commands.progress import progress
     from strainwave.diagnose.actuator_ramp import LOOPS, ActuatorRamp, in_series, wave_generator
     from strainwave.diagnose.inversion import COMBINE
     from strainwave.diagnose.misalignment_sweep import BOTH_LOOPS, LOBES, level_lines, sweep_misalignment
     from strainwave.files import writing
     from strainwave.files.gear_set import GearSet
+    from strainwave.progress import in_turn
 
     ramp = ActuatorRamp.of(GearSet.read(drive).drive, radians(stroke), time)
     law, assumed = wave_generator(ramp.drive)
     found = {}
-    with progress(len(LOOPS) * len(COMBINE)) as turn:
+    with in_turn(None, len(LOOPS) * len(COMBINE)) as turn:
         for loop, combine in product(LOOPS, COMBINE):
             turn(f"{LOBES[combine]}, loop on the {LOOPS[loop]}")
             found[loop, combine] = sweep_misalignment(in_series(ramp).closed_on(loop), law.replace(combine=combine))

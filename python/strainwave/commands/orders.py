@@ -10,7 +10,7 @@ import typer
 
 from strainwave.commands.file_options import FileOptions
 from strainwave.commands.options import folder, numeric, with_groups
-from strainwave.commands.progress import progress
+from strainwave.progress import in_turn
 
 if TYPE_CHECKING:
     from strainwave.identification.reading.source import MeasurementFile
@@ -57,7 +57,7 @@ def orders(
             f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
         )
     runs = [run for path in paths for run in MeasurementFile(path).runs]
-    with progress(len(runs)) as turn:
+    with in_turn(None, len(runs)) as turn:
         found = []
         for run in runs:
             turn(run.path.name)

@@ -40,14 +40,15 @@ def plan(
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
     torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
 ) -> None:
-    """Rank candidate measurements by what they reach per minute.
+    r"""Rank candidate measurements by what they reach per minute.
 
     Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
     deviation of each wanted number before and after, and what would remain unknown, and why.
 
     Examples:
         strainwave plan csg-25-100 --want gear.friction_input
-        strainwave plan gear.toml --want gear.friction_input --speed-limit "3000 rpm"
+        strainwave plan gear.toml --want gear.friction_input \
+          --speed-limit "3000 rpm"
     """
     from typing import Any
 
@@ -74,7 +75,7 @@ def plan(
         noise=_numbers("noise", "friction=0.002", noise or []),
         resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
-    print(found.summary())
+    print(found)
 
 
 def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:

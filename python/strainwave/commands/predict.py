@@ -10,7 +10,6 @@ import typer
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import folder, with_groups
-from strainwave.commands.progress import progress
 
 
 @with_groups
@@ -39,11 +38,9 @@ def predict(
 
     saved, opened = GearSet.read(gear), measurement_files(paths)
     read = paths_in(opened)
-    with progress(len(read)) as turn:
-        found = predicted(saved, opened, mapping=given.mapping_of(opened.files), progress=turn)
-        turn("report")
-        files = predict_files(found, saved, Provenance.of_this_command(read))
-        write_folder(out, files)
+    found = predicted(saved, opened, mapping=given.mapping_of(opened.files))
+    files = predict_files(found, saved, Provenance.of_this_command(read))
+    write_folder(out, files)
     print(predict_summary(found))
     print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     if any(each.contradicts for each in found):

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 rig = typer.Typer(cls=Verbs, help="Plan, make and analyse tests of torsional stiffness.")
 
-DOCUMENT_T = "document-t"  # the gears of document T's Table 2, as `gear_named` knows them
+ARTICLE = "torsional-stiffness-article"  # the gears of the torsional stiffness article's Table 2, as `gear_named` knows them
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
@@ -76,7 +76,8 @@ def plan_command(
 ) -> None:
     """Print what to lay on the pans and take off, step by step.
 
-    The cycle is document T's: the positive peak, down to zero, to the negative peak, back to zero, and up to the positive peak.
+    The cycle is the torsional stiffness article's: the positive peak, down to zero, to the negative peak, back to zero, and up
+    to the positive peak.
 
     Examples:
         strainwave rig plan --torque 0.3 --positions 0
@@ -98,8 +99,9 @@ def plan_command(
 @with_groups
 def simulate(
     gear: Annotated[
-        str, typer.Argument(help="A set by name, a gear file, or document-t: the gears of document T's Table 2.")
-    ] = DOCUMENT_T,
+        str,
+        typer.Argument(help="A set by name, a gear file, or torsional-stiffness-article: the gears of its Table 2."),
+    ] = ARTICLE,
     name: RigOption = "couple-rig",
     out: Annotated[Path, folder("Folder for the test; it must not hold one yet.")] = Path("out/rig-test"),
     options: PlanOptions = USUAL_PLAN,
@@ -113,7 +115,6 @@ def simulate(
         strainwave rig simulate --positions 0 --out rehearsal
         strainwave rig simulate hfuc-20-80 --positions 0 --out hfuc
     """
-    import sys
 
     from strainwave.rig.bench.steps_file import write_steps
     from strainwave.rig.reading.measurement import PLAN
@@ -123,12 +124,12 @@ def simulate(
     bench = _rig(name)
     made = options.plan(bench)
     steps = made.steps
-    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed, progress=sys.stderr.isatty())
+    test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed)
     write_steps(steps, out / PLAN)
     print(f"wrote {out}: {len(test.steps)} photographs, steps.csv, {PLAN}, rig.toml, and the truth in truth*")
     if abs(made.peak - options.torque) > 1e-9 * options.torque:
         print(f"the peak is {made.peak:.4f} N.m: {options.torque:g} N.m is no step of the masses")
-    if gear == DOCUMENT_T and (short := narrower(sorted({each.position for each in steps}), made.peak)):
+    if gear == ARTICLE and (short := narrower(sorted({each.position for each in steps}), made.peak)):
         print(*short, sep="\n")
         print("more torque, or --unequal, which halves the steps, may reach it")
     print(f"to analyse it: strainwave rig analyse {out}")
@@ -145,7 +146,7 @@ def measure(
         str | None, typer.Option("--rig", help="The rig: a name, or a .toml file; couple-rig if not given.")
     ] = None,
     options: PlanOptions = USUAL_PLAN,
-    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = DOCUMENT_T,
+    gear: Annotated[str, typer.Option(help="The gear on a virtual rig, as for simulate.")] = ARTICLE,
     pictures: Annotated[int, whole("Photographs in a row that must agree before a step counts as at rest.")] = 5,
     interval: Annotated[float, numeric("Time between two photographs in s.")] = 0.5,
     patience: Annotated[float, numeric("Time in s after which a shaft that still moves is reported.")] = 60.0,
@@ -216,36 +217,29 @@ def analyse(
         strainwave rig analyse rehearsal
         strainwave rig analyse rehearsal --out results
     """
-    from rich.console import Console
-
     from strainwave.files.gear_set import GearSet
     from strainwave.files.writing import write_folder
     from strainwave.messages import pairs
-    from strainwave.report.results_json import results_json
-    from strainwave.report.rig import rig_report, summary
-    from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
+    from strainwave.report.files_of import evaluation_files
+    from strainwave.report.rig import summary
+    from strainwave.report.rig_files import loop_names
     from strainwave.rig.loop import COLUMNS
     from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
     target = _target(paths, out)
-    with Console(stderr=True).status("reading") as status:
-        given = EvaluationOptions(
-            rig=None if name is None else _rig(name),
-            gear_set=None if gear is None else GearSet.read(gear),
-            rated_torque=rated_torque,
-            reference=reference,
-            friction=friction,
-            positions=None if positions is None else _numbers("--positions", positions),
-            columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
-            units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
-        )
-        found, read = evaluate_paths(paths, given, status.update)
-        status.update("report")
-        provenance = _provenance(read)
-        files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-        files["results.json"] = results_json(results(found, provenance.date))
-        files["report.html"] = rig_report(found, provenance, list(files))
-        write_folder(target, files)
+    given = EvaluationOptions(
+        rig=None if name is None else _rig(name),
+        gear_set=None if gear is None else GearSet.read(gear),
+        rated_torque=rated_torque,
+        reference=reference,
+        friction=friction,
+        positions=None if positions is None else _numbers("--positions", positions),
+        columns=pairs("--column", column, {name for pair in COLUMNS.values() for name in pair}),
+        units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
+    )
+    found, read = evaluate_paths(paths, given)
+    files = evaluation_files(found, _provenance(read))
+    write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
     if left := [each for each in there if each not in files]:
@@ -310,15 +304,14 @@ def influence(
     ] = None,
     out: Annotated[Path, folder("Folder for report.html.")] = Path("out/rig-influence"),
 ) -> None:
-    r"""Test a series of torsion loops for trends.
+    """Test a series of torsion loops for trends.
 
     Prints the dependence of area, width and stiffness on torque level, temperature, preload, ratio, modulus, cycles and hours,
     each with its 95 % interval and its probabilities.
 
     Examples:
-        strainwave rig influence --loop "cold.csv,temperature=5 degC" \
-          --loop "warm.csv,temperature=40 degC"
         strainwave rig influence --measured series.csv
+        strainwave rig influence --measured series.csv --out trends
     """
     from strainwave.files.writing import write_folder
     from strainwave.report.influence import influence_report, summary
@@ -368,7 +361,7 @@ def _rig(name: str) -> Rig:
 
 
 def _rig_of_test(folder: Path, name: str | None) -> Rig:
-    """The rig that was named, or that of the folder, or the one of document T."""
+    """The rig that was named, or that of the folder, or the one of the torsional stiffness article."""
     from strainwave.files.folder import inside
 
     there = inside(folder, "rig.toml")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -37,7 +36,7 @@ def simulate(
 
     Examples:
         strainwave simulate robot-joint --scenario move.toml
-        strainwave simulate robot-joint --scenario move.toml --out run.parquet --plot run.svg
+        strainwave simulate robot-joint --scenario move.toml --plot run.svg
     """
     from strainwave.files.gear_set import GearSet
     from strainwave.files.recording import Recording
@@ -53,7 +52,7 @@ def simulate(
     given = ScenarioFile.read(scenario, whole)
     wanted = list(chosen(whole, record) if record else outputs(whole))
     rated = [name for name in ("torque", "input_speed") if name not in wanted]
-    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated], "progress": sys.stderr.isatty()})
+    run = _run(given, whole, dt, tolerance, {"sample": sample, "record": [*wanted, *rated]})
     title = one_line(f"{gear_set.name}: {given.name or scenario.stem}")
     recording = Recording(run.columns, run.units, title).select(["time", *wanted])
     _write_run(recording, out, plot)

@@ -48,7 +48,7 @@ def manifest(shards: Shards, schema: Any) -> str:
         "seed": plan.seed,
         "versions": {name: version(name) for name in PACKAGES} | {"python": platform.python_version()},
         "machine": platform.machine(),
-        "drive": {"gear_set": population.gear_set.name, "parts": repr(population.drive)},
+        "drive": {"gear_set": population.gear_set.name, "parts": population.drive.to_dict()["rows"]},
         "members": plan.members,
         "conditions": plan.condition_count,
         "units": plan.units.number,

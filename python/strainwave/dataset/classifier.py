@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.messages import listed
+from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
 Labels = NDArray[np.str_]
@@ -31,7 +32,7 @@ EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
 
 
 @dataclass(frozen=True)
-class Score:
+class Score(Presented):
     """Balanced accuracy on runs that were held out: the mean over the labels of the share that is recognised.
 
     Attributes:
@@ -49,7 +50,7 @@ class Score:
 
 
 @dataclass(frozen=True)
-class Benchmark:
+class Benchmark(Presented):
     """Scores of the classifier, of a detector, and of chance.
 
     Attributes:

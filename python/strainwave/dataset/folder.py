@@ -14,13 +14,14 @@ from strainwave.dataset.plan import DatasetPlan
 from strainwave.files.writing import making, remove_drafts, replacing
 from strainwave.messages import one_line
 from strainwave.operating_system import lock_bytes
+from strainwave.presentation import Presented
 
 PLAN, MANIFEST, CARD, SUMS, LOCKS = "plan.toml", "manifest.json", "card.md", "SHA256SUMS", ".work.lock"
 READ_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
-class DatasetFolder:
+class DatasetFolder(Presented):
     """The files of a data set."""
 
     path: Path
@@ -116,6 +117,9 @@ class DatasetFolder:
             yield lock_bytes(descriptor, start, length)
         finally:
             os.close(descriptor)
+
+    def _headline(self) -> str:
+        return str(self.path)
 
 
 def _hash(path: Path) -> str:

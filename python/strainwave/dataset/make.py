@@ -5,7 +5,6 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -19,6 +18,8 @@ from strainwave.dataset.shards import Shards, write_table
 from strainwave.files.writing import claiming, making, replacing
 from strainwave.messages import one_line
 from strainwave.native import kernels
+from strainwave.presentation import Presented
+from strainwave.progress import Progress, in_turn
 from strainwave.simulation.threads import available_threads
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ Runner = Literal["local", "dask", "slurm"]
 
 
 @dataclass(frozen=True)
-class CostEstimate:
+class CostEstimate(Presented):
     """Time and size of a data set, estimated from a pilot of some members.
 
     Args:
@@ -96,7 +97,7 @@ def make(
     runner: Runner = "local",
     workers: int | None = None,
     scheduler: str | None = None,
-    progress: Callable[[str], None] | None = None,
+    progress: Progress = None,
 ) -> Path:
     """Make the data set of a plan; one that was begun goes on, and its complete shards stay.
 
@@ -108,7 +109,7 @@ def make(
         runner: processes on this machine, a Dask cluster, or a script for Slurm to be handed in
         workers: processes, or tasks of the Slurm array; as many as this process may use cores, if not given
         scheduler: address of the Dask scheduler
-        progress: called with a line from time to time
+        progress: as of `sw.simulate`
 
     Returns:
         the folder; of Slurm the script
@@ -123,7 +124,6 @@ def make(
     shards = Shards(Population(DatasetPlan.read(plan)))
     target = DatasetFolder(Path(folder))
     count = workers or available_threads()
-    show = progress or (lambda line: None)
     cost = estimate(shards, target.path, count, shards.plan.shards - target.done())
     with making(target.path), claiming(target.path):
         target.begin(shards.plan, text, manifest(shards, cost.schema), card(shards, cost.schema))
@@ -136,10 +136,11 @@ def make(
             return script
         target.remove_drafts()
         try:
-            if runner == "dask":
-                runners.run_by_dask(target, scheduler, show)
-            else:
-                runners.run_locally(target, min(count, shards.plan.shards), show)
+            with in_turn(progress) as show:
+                if runner == "dask":
+                    runners.run_by_dask(target, scheduler, show)
+                else:
+                    runners.run_locally(target, min(count, shards.plan.shards), show)
         finally:
             target.remove_drafts()
         runners.finish(target)

@@ -19,6 +19,7 @@ from strainwave.dataset.splits import share_of
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown
+from strainwave.presentation import Presented
 from strainwave.simulation.resolution import check_resolution
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import command_unit, outputs
@@ -45,7 +46,7 @@ class Condition(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class MemberTable:
+class MemberTable(Presented):
     """Members of one condition, each array of shape (members,).
 
     Args:

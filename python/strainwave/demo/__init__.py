@@ -1,7 +1,8 @@
 """The demonstration: a joint of a robot from its log, and two gears from published measurements.
 
-The log is that of a joint simulated by a program that shares nothing with this package. The friction table is document P's, the
-torsion loop is document T's: two different gears of ratio 1:100. No publication known to us measures both on one gear.
+The log is that of a joint simulated by a program that shares nothing with this package. The friction table is the position
+control article's, the torsion loop is the torsional stiffness article's: two different gears of ratio 1:100. No publication
+known to us measures both on one gear.
 """
 
 from __future__ import annotations
@@ -26,13 +27,13 @@ def robot_joint() -> Identified:
 
 
 def torsion_rig() -> Identified:
-    """Return the gear on document T's rig from its torsion loop, whose points are reconstructed from figures (E-T4)."""
+    """Return the gear of the torsional stiffness article from the loop of its Table 2 (its erratum 4)."""
     loop = _titled("torsional-stiffness-loop.csv", "torsional stiffness article, Table 2, at 0°")
     return identify(PUBLISHED / "torsional-stiffness.toml", {"torsion": loop}, accept=True)
 
 
 def position_drive() -> Identified:
-    """Return the gear of document P's drive from its Table 2, read as all friction (E-P7 has its other readings)."""
+    """Return the gear of the position control article's drive from its Table 2, read as all friction (its erratum 7)."""
     table = _titled("position-control-friction.csv", "position control article, Table 2, as friction")
     return identify("position-drive", {"friction": table}, accept=True)
 

@@ -1,4 +1,4 @@
-"""Ramp of an actuator: its output turns through its stroke at constant speed, as in document A."""
+"""Ramp of an actuator: its output turns through its stroke at constant speed, as in the flight actuator paper."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from strainwave.files.described import parameters, parts
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 from strainwave.simulation.ensemble import Ensemble, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.resolution import MAX_STEP_PHASE
@@ -35,7 +36,8 @@ MIN_TIME, MAX_TIME = 1e-6, 600.0  # s, of the ramp
 MIN_TURNS, MAX_TURNS = 3.0, 1e4  # of the input, after the run-in and in all
 MIN_SPEED_SHARE = 0.9  # of the commanded speed [1], that a drive must reach on average
 CHANNELS = ("torque", "current", "output_angle", "input_angle")
-# Document A prints no dimensions. Assumed where the drive has none: those of E-R2, 0.6 mm of difference between the half axes.
+# The flight actuator paper prints no dimensions. Assumed where the drive has none: those of erratum 2 of the review of dynamic
+# models, 0.6 mm of difference between the half axes.
 ASSUMED = kinematic_error.Misalignment(
     major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=np.radians(20.0)
 )
@@ -43,7 +45,7 @@ ASSUMED_SECTION_OFFSET = 4e-3  # m, from the centre of tilt to the section, of a
 
 
 @dataclass(frozen=True)
-class ActuatorRamp:
+class ActuatorRamp(Presented):
     """A drive, a stroke and its time.
 
     Attributes:
@@ -213,7 +215,7 @@ def in_series(ramp: ActuatorRamp) -> ActuatorRamp:
     """Return the ramp with the stages of a staged gear in series as one spring, which takes less time; else the ramp itself.
 
     Right for what is slow against the stages, as orders of the wave generator are. Inertias between the stages are left out.
-    Referred to the output, with the ratio i, compliances add up (E-A6), with those of both couplings:
+    Referred to the output, with the ratio i, compliances add up (its erratum 6), with those of both couplings:
 
     1/K = 1/K_t + tan^2(alpha_t) / (K_b r_g^2) + 1 / (K_m r_g^2 cos^2(alpha_t)) + 1/K_CS + 1 / (K_WG i^2)
 

@@ -20,6 +20,7 @@ from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
 from strainwave.orders.comb import RATIOS
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ MIN_PLACE_MARGIN = 0.05  # rad of the output, by which it may lie outside or apa
 
 
 @dataclass(frozen=True)
-class OrderChange:
+class OrderChange(Presented):
     """Change of one order in one direction, recording less baseline.
 
     Attributes:
@@ -82,7 +83,7 @@ class OrderChange:
 
 
 @dataclass(frozen=True)
-class BaselineComparison:
+class BaselineComparison(Presented):
     """Changes of a recording against a baseline.
 
     Attributes:

@@ -27,6 +27,7 @@ from strainwave.diagnose.motion import SampledMotion, motion_of
 from strainwave.diagnose.regression import OrderRegression, regressions
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
+from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ NOT_SEPARATED = "not separated"
 
 
 @dataclass(frozen=True)
-class OrderLine:
+class OrderLine(Presented):
     """An order in a column of a recording.
 
     Attributes:

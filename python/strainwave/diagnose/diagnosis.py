@@ -24,6 +24,7 @@ from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import without_name
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.torque_ripple import Ripple, ripple
+from strainwave.presentation import Presented, Reported
 from strainwave.spline_orders import WAVE_ORDER
 
 Verdict = Literal["changed", "no change found", "insensitive", "not comparable", "lines found", "no line found"]
@@ -35,7 +36,7 @@ MAX_OTHER_LINES = 6  # that are fitted in addition to the wave generator's
 
 
 @dataclass(frozen=True)
-class OrderAgainstNoise:
+class OrderAgainstNoise(Presented):
     """A named order of a recording, compared with its noise.
 
     Attributes:
@@ -72,7 +73,7 @@ class LoadCell:
 
 
 @dataclass(frozen=True)
-class WaveRipple:
+class WaveRipple(Presented):
     """Ripple of the wave generator, found without a ratio or at a given one.
 
     Attributes:
@@ -91,7 +92,7 @@ class WaveRipple:
 
 
 @dataclass(frozen=True, eq=False)
-class RunDiagnosis:
+class RunDiagnosis(Presented):
     """Diagnosis of one recording.
 
     Attributes:
@@ -130,7 +131,7 @@ class RunDiagnosis:
 
 
 @dataclass(frozen=True, eq=False)
-class Diagnosis:
+class Diagnosis(Presented, Reported):
     """Diagnosis of one joint.
 
     Attributes:

@@ -39,6 +39,7 @@ from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -103,7 +104,7 @@ class Sensitivity:
 
 
 @dataclass(frozen=True)
-class Geometry:
+class Geometry(Presented):
     """Misalignment that a record of the current determines.
 
     Attributes:

@@ -13,6 +13,7 @@ from strainwave import arguments
 from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
+from strainwave.presentation import Presented
 from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
@@ -27,7 +28,7 @@ LIFE_QUANTILES = (0.1, 0.5, 0.9)  # of the gears that have failed
 
 
 @dataclass(frozen=True)
-class HealthIndicator:
+class HealthIndicator(Presented):
     """Health indicator of a recording.
 
     Attributes:
@@ -46,7 +47,7 @@ class HealthIndicator:
 
 
 @dataclass(frozen=True)
-class CatalogueLife:
+class CatalogueLife(Presented):
     """Remaining life of the bearing of the wave generator by the maker's formula, for a load like that of the recordings.
 
     L_10 = L_n (T_r / T_av)³ (N_r / N_av), with the Weibull slope that L_50 = 5 L_10 means.
@@ -69,7 +70,7 @@ class CatalogueLife:
 
 
 @dataclass(frozen=True)
-class HealthTrend:
+class HealthTrend(Presented):
     """Straight line through the health indicator over the hours of operation.
 
     Attributes:

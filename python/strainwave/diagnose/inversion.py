@@ -19,6 +19,7 @@ from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL, false_alarm_of
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
+from strainwave.presentation import Presented
 from strainwave.statistics.student import student
 
 Array = NDArray[np.float64]
@@ -65,7 +66,7 @@ class MeasuredOrders:
 
 
 @dataclass(frozen=True)
-class MisalignmentEstimate:
+class MisalignmentEstimate(Presented):
     """Misalignment that the orders of a column determine.
 
     Attributes:

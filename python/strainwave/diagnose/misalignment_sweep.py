@@ -13,6 +13,7 @@ from strainwave.diagnose.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, Ac
 from strainwave.diagnose.inversion import M_PER_MICRON
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes
+from strainwave.presentation import Presented
 from strainwave.simulation.ensemble import Ensemble
 from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number
 
@@ -38,7 +39,7 @@ MIN_TABLE_VALUE = 1e-3  # in the units of the table: nobody would measure less
 
 
 @dataclass(frozen=True)
-class SweepLevels:
+class SweepLevels(Presented):
     """Ramps over the levels of all sweeps, for one `combine` and one loop.
 
     Attributes:

@@ -25,6 +25,7 @@ from strainwave.diagnose.inversion import (
     to_point,
 )
 from strainwave.files.recording import Recording
+from strainwave.presentation import Presented
 
 Complex = NDArray[np.complex128]
 
@@ -33,7 +34,7 @@ CORRECTION_RUNS = 2  # with the estimate; each corrects it
 
 
 @dataclass(frozen=True)
-class RecoveryModel:
+class RecoveryModel(Presented):
     """A drive with two runs that determine its response to a kinematic error, without noise of its sensors.
 
     Attributes:

@@ -13,10 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import hypot, inf
 
-from strainwave import Drive, arguments
+from strainwave import Drive, arguments, typeset
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
+from strainwave.presentation import Presented
 
 PROBE = RAD_PER_ARCMIN  # rad: error of the first run; later ones have the limit itself
 PROBE_RUNS = 3  # runs with an error at most
@@ -26,7 +27,7 @@ MIN_PROBE = 1e-3 * RAD_PER_ARCMIN  # rad
 
 
 @dataclass(frozen=True)
-class DetectionLimit:
+class DetectionLimit(Presented):
     """Smallest kinematic error of an order that the motor current shows.
 
     Attributes:
@@ -76,6 +77,11 @@ class DetectionLimit:
     def insensitive(self) -> bool:
         """True if an error as large as the gear may have is not detected: no alarm then means nothing."""
         return self.amplitude > self.accuracy
+
+    def _headline(self) -> str:
+        verdict = "an error that the gear may have is NOT detected" if self.insensitive else "errors of this gear are detected"
+        limit = typeset.quantity(self.amplitude, "rad")
+        return f"order {self.order:g} from {limit} on ({self.arcminutes:.3g} arcmin) at the output, {verdict}"
 
 
 def detection_limit(

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, ParamSpec, get_args
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.presentation import Presented
 from strainwave.tuning.loss import ExportLoss
 
 Args = ParamSpec("Args")
@@ -33,7 +34,7 @@ NOT_BY_ITSELF = ("fitted but not identified", "identified in combination")  # be
 
 
 @dataclass(frozen=True)
-class Exported:
+class Exported(Presented):
     """A gear in the form of another program.
 
     Attributes:

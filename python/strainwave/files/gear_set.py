@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
-from math import isfinite
+from math import isfinite, nan
 from operator import attrgetter
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Protocol, TypeVar, overload, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_checkable
 
 from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
@@ -23,7 +24,11 @@ from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
 from strainwave.files.tables import FORMATS
-from strainwave.messages import quoted, shortened, unquoted
+from strainwave.messages import in_a_sentence, quoted, shortened, unquoted
+from strainwave.presentation import Pictured, Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Kind = TypeVar("Kind", bound=Entry)
 _PARTS = [field["name"] for field in Drive.fields]
@@ -52,7 +57,7 @@ class FittedModel(Protocol):
 
 
 @dataclass(frozen=True)
-class GearSet:
+class GearSet(Pictured):
     """A gear, the source of each of its numbers, its ratings and the other parts of its drive.
 
     Two sets are equal if all members are, sources and ratings too. Their gears are equal if models and numbers are: as the
@@ -311,6 +316,35 @@ class GearSet:
         """
         gear_file.write(self, Path(path))
 
+    def _headline(self) -> str:
+        maker = f", {self.maker}" if self.maker else ""
+        others = [name for name in _PARTS if name != "gear" and getattr(self, name) is not None]
+        parts = f", with {in_a_sentence(others)}" if others else ""
+        return f"{self.name}{maker}{parts}: {self.gear._headline()}"
+
+    def _rows(self) -> Iterator[Row]:
+        idle = set(gear_file.idle(self))
+        for name in _PARTS:
+            if (model := getattr(self, name)) is not None:
+                for row in model._rows():
+                    path = f"{name}.{row.name}"
+                    entry = self.sources.get(path)
+                    if path not in idle:
+                        sigma = None if entry is None or not isinstance(row.value, float) else entry.sigma(row.value)
+                        source = row.note if entry is None else entry.source
+                        yield Row(path, row.value, row.unit, nan if sigma is None else sigma, source)
+        for name, rating in self.ratings.items():
+            yield Row(f"ratings.{name}", rating.value, rating.unit, note=rating.source)
+
+    def _remarks(self) -> Iterator[str]:
+        return iter([self.note] if self.note else [])
+
+    def plot(self) -> Figure:
+        """Return a figure of the gear: twist over torque, and friction over speed."""
+        from strainwave.simulation.gear_plot import gear_figure
+
+        return gear_figure(self.gear, self.name)
+
 
 def catalogue(of: str = "gears") -> list[str]:
     """Return the names of the sets that come with the package, in order.
@@ -403,6 +437,11 @@ def save(model: GearSet | Gear | Drive | FittedModel, path: str | Path, **naming
     ...     load(f"{folder}/mine.toml").damping
     0.30000000000000004
     """
+    if not isinstance(model, GearSet) and (missing := [name for name in ("name", "source") if name not in naming]):
+        raise TypeError(
+            f"{' and '.join(missing)} must be given: a {type(model).__name__.lower()} does not have them, as in save(gear, "
+            'path, name="mine", source="measured on my rig")'
+        )
     gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
     if gear_set is model and naming:
         name, given = min(naming.items())
@@ -495,10 +534,11 @@ def _file(name_or_path: str | Path) -> Path:
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
-    if name_or_path not in files:
-        near = difflib.get_close_matches(name_or_path.lower(), files)
+    name = re.sub(r"[\s_]+", "-", name_or_path.strip().casefold())  # catalogues print HFUC-25-100
+    if name not in files:
+        near = difflib.get_close_matches(name, files)
         raise ValueError(
             f"no set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
             'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
-    return files[name_or_path]
+    return files[name]

@@ -16,6 +16,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.messages import shortened
+from strainwave.presentation import Statement
 
 Array = NDArray[np.float64]
 
@@ -38,7 +39,7 @@ _REMEMBERED: dict[Gear, GearSet] = {}
 
 
 @dataclass(frozen=True)
-class RatingCheck:
+class RatingCheck(Statement):
     """One limit of a gear set, and what a recording reached of it.
 
     Attributes:
@@ -67,7 +68,7 @@ class RatingCheck:
         """True if the recording exceeded the limit."""
         return self.reached > self.limit.value
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         """The check in one line."""
         unit = self.limit.unit
         verdict = "exceeds" if self.exceeded else "keeps"

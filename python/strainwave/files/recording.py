@@ -16,10 +16,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments
+from strainwave import arguments, typeset
+from strainwave.files.labels import Label, label_of
 from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.presentation import DIGITS, Pictured, Row
 
 if TYPE_CHECKING:
     import pandas
@@ -30,16 +32,19 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+LISTED_COLUMNS = 5  # in one line, and in the picture of a notebook
 GENERATED_TITLE = "simulation"  # first word of the titles that simulations give their recordings
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Recording:
+class Recording(Pictured):
     """Named series of equal length, each with its unit.
 
     Args:
-        columns: the values of each series, in order, shape (n,), n >= 1; copied unless they are read-only already
-        units: the unit of each series, as `strainwave.files.units.check` knows it
+        columns: the values of each series, in order, shape (n,), n >= 1, or a table of pandas; copied unless they are read-only
+            already
+        units: the unit of each series, as `strainwave.files.units.check` knows it; by default those of a table of pandas, in
+            its names, as `torque [N.m]`, or as `to_frame` writes them
         title: what was recorded, one line
 
     A column called `time` must strictly increase. Rows are counted from 0.
@@ -58,7 +63,16 @@ class Recording:
     units: Mapping[str, str]
     title: str
 
-    def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
+    def __init__(
+        self,
+        columns: Mapping[str, ArrayLike] | pandas.DataFrame,
+        units: Mapping[str, str] | None = None,
+        title: str = "",
+    ) -> None:
+        if hasattr(columns, "attrs"):  # of pandas
+            columns, units = _of_frame(columns, units)
+        elif units is None:
+            raise TypeError('units must be given: the unit of each column, as {"time": "s"}')
         _check_names(columns, units)
         if arguments.text("title", title) and not title.isprintable():
             raise ValueError(f"title {shortened(title)} must be one line of text")
@@ -124,11 +138,23 @@ class Recording:
     def __reduce__(self) -> tuple[type[Recording], tuple[dict[str, Array], dict[str, str], str]]:
         return Recording, (dict(self.columns), dict(self.units), self.title)
 
-    def __repr__(self) -> str:
+    def _headline(self) -> str:
         span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
-        series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
-        title = f' "{self.title}"' if self.title else ""
-        return f"<Recording{title}: {len(self)} samples{span}; {series}>"
+        more = len(self.names) - LISTED_COLUMNS
+        series = ", ".join(f"{name} [{self.units[name]}]" for name in self.names[:LISTED_COLUMNS])
+        series += f" and {more} more" if more > 0 else ""
+        title = f'"{self.title}": ' if self._heading else ""
+        return f"{title}{len(self)} samples{span}; {series}"
+
+    def _picture(self) -> Figure | None:
+        """Return the figure of the first columns that change."""
+        changing = [name for name in self.names if name != "time" and np.ptp(self[name]) > 0.0]
+        return self.plot(changing[:LISTED_COLUMNS], self.names[0]) if changing else None
+
+    def _rows(self) -> Iterator[Row]:
+        for name, values in self.columns.items():
+            mean = typeset.number(float(np.mean(values)), DIGITS)
+            yield Row(name, (float(values.min()), float(values.max())), self.unit(name), note=f"mean {mean}")
 
     def unit(self, name: str) -> str:
         """Return the unit of a column.
@@ -234,7 +260,7 @@ class Recording:
                 file.write(f"{TITLE}{self.title}\n".encode())
             write_csv(table, file)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_frame(self) -> pandas.DataFrame:
         """The columns as a table of pandas, units in its ``attrs["units"]``.
 
         Raises:
@@ -243,7 +269,7 @@ class Recording:
         try:
             import pandas
         except ImportError:
-            raise ImportError("to_pandas needs pandas, which is not installed; dict(recording) needs nothing") from None
+            raise ImportError("to_frame needs pandas, which is not installed; dict(recording) needs nothing") from None
         frame = pandas.DataFrame(dict(self.columns))
         frame.attrs["units"] = dict(self.units)
         return frame
@@ -416,6 +442,14 @@ class _Fault(NamedTuple):
     column: str
     row: int
     reason: str
+
+
+def _of_frame(frame: pandas.DataFrame, units: Mapping[str, str] | None) -> tuple[dict[str, Array], Mapping[str, str]]:
+    """Return the columns of a table of pandas, and their units."""
+    labels = [label_of(name) if isinstance(name, str) else Label(name, name, None) for name in frame.columns]
+    if units is None:
+        units = {label.name: label.unit for label in labels if label.unit is not None} | frame.attrs.get("units", {})
+    return {label.text if label.text in units else label.name: frame[label.text].to_numpy() for label in labels}, units
 
 
 def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> None:

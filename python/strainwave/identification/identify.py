@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -40,6 +40,8 @@ from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
 from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
+from strainwave.presentation import Pictured, Reported, Row, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 from strainwave.simulation.threads import one_thread_of_algebra
 
@@ -50,7 +52,7 @@ Mapped: TypeAlias = Callable[[Path], FileMapping] | FileMapping | None
 
 
 @dataclass(frozen=True, eq=False)
-class Identified(ComparedByFields):
+class Identified(ComparedByFields, Pictured, Reported):
     """Result of `identify`: the estimates of each file, their combination, and the checks of both.
 
     Attributes:
@@ -117,6 +119,23 @@ class Identified(ComparedByFields):
 
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
 
+    def _headline(self) -> str:
+        checks = counted(len(self.checks), "check")
+        verdict = f"{len(self.failed)} of {checks} FAILED" if self.failed else f"{checks} passed"
+        refused = sum(bool(each.refused) for each in self.files)
+        files = counted(len(self.files), "file") + (f", {refused} refused" if refused else "")
+        return f"{self.gear_set.name}, {counted(len(self.parameters), 'parameter')} from {files}, {verdict}"
+
+    def _rows(self) -> Iterator[Row]:
+        for each in self.parameters:
+            taken = each.estimate
+            yield Row(taken.label, taken.value, taken.unit, taken.sigma, each.taken_from)
+        for file in self.files:
+            yield Row(file.name, file._headline())
+
+    def _remarks(self) -> Iterator[str]:
+        return (f"FAILED: {check.source}: {check.message}; {check.remedy}" for check in self.failed)
+
 
 def identify(
     start_set: GearSet | str | Path,
@@ -125,7 +144,7 @@ def identify(
     mapping: Mapped = None,
     accept: bool = False,
     name: str | None = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Identified:
     """Determine the type of each file of measurements, fit it, and combine the estimates of all to one gear.
 
@@ -137,7 +156,7 @@ def identify(
         mapping: what a person states of all files, or a function that returns it for the path of each
         accept: whether files are used although a check of them fails
         name: of the gear, one line of text; by default that of its files, as `gear of joint_5`
-        progress: called with the name of each file as its turn comes
+        progress: as of `sw.simulate`
 
     Returns:
         result of each file, and the gear; look at its `failed` checks before it is used
@@ -165,7 +184,8 @@ def identify(
     recognised = joined(_only_read(read))
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
-    fits = _Fits.of(start_set, recognised, mapping, accept, progress)
+    with in_turn(progress, len(recognised)) as turn:
+        fits = _Fits.of(start_set, recognised, mapping, accept, turn)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     results = without_motor(results, accept=accept)
@@ -198,13 +218,6 @@ def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult])
         one_line(found.name), found.kind, found.channel, found.unit, found.error, found.varies, found.error, found.varies
     )
     return replace(gear_set, validation=(*gear_set.validation, own))
-
-
-def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:
-    """Return the checks of one file that `identify` makes of it."""
-    fits = _Fits.of(start, [file])
-    results = (*fits.results.values(), *fits.together)
-    return _checks(start, results, combine(results))
 
 
 def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:
@@ -262,9 +275,9 @@ class _Fits:
     """The fits of all files, one after the other in the order of their kinds."""
 
     def __init__(
-        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, progress: Callable[[str], None]
+        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, turn: Callable[[str], None]
     ) -> None:
-        self.known, self.copies, self.mapping, self.accept, self.progress = known, copies, mapping, accept, progress
+        self.known, self.copies, self.mapping, self.accept, self.turn = known, copies, mapping, accept, turn
         self.results = dict[Path, FileResult]()
         self.together = list[FileResult]()
 
@@ -275,11 +288,11 @@ class _Fits:
         files: Sequence[Recognised],
         mapping: Mapped = None,
         accept: bool = False,
-        progress: Callable[[str], None] = lambda stage: None,
+        turn: Callable[[str], None] = lambda name: None,
     ) -> _Fits:
         """Return the fits of files from a start set."""
         before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
-        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, progress)
+        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, turn)
         fits.fit_all(files)
         return fits
 
@@ -292,7 +305,7 @@ class _Fits:
         for kind in kinds:
             mine = [file for file in files if turns[file.path][0] == kind.name]
             for file in sorted(mine, key=lambda file: turns[file.path][1]):
-                self.progress(file.path.name)
+                self.turn(file.path.name)
                 self.fit(own[file.path], file)
             self.fit_together(kind.fit_together, self._originals(kind, own, files))
         for kind in kinds:

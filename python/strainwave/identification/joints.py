@@ -12,6 +12,8 @@ from strainwave.identification.identify import Identified, check_arguments, iden
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import joints_of
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.presentation import Presented, Reported, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.questions import QuestionError
 
 ONE = "1"  # name of the joint of files that name none
@@ -20,7 +22,7 @@ MAX_JOINTS = 100  # of all files: every file is read once for each; humanoids ha
 
 
 @dataclass(frozen=True)
-class Joints:
+class Joints(Presented, Reported):
     """Result of `identify_joints`: the gear of each joint of an arm.
 
     Attributes:
@@ -33,6 +35,10 @@ class Joints:
     refused: Mapping[str, str]
     left_out: Mapping[str, str]
 
+    def _headline(self) -> str:
+        refused = f", {len(self.refused)} refused" if self.refused else ""
+        return f"{counted(len(self.found), 'joint')}{refused}"
+
 
 def identify_joints(
     start: GearSet | str | Path,
@@ -41,7 +47,7 @@ def identify_joints(
     mapping: Callable[[Path], FileMapping] | None = None,
     accept: bool = False,
     name: str | None = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Joints:
     """Identify every joint that moves in files, each by itself.
 
@@ -50,7 +56,7 @@ def identify_joints(
         files: logs of an arm; of a folder all files that may be such
         mapping, accept: as of `identify`
         name: of the arm; each gear has that of its joint behind it
-        progress: called with the name of each joint as its turn comes
+        progress: as of `sw.simulate`
 
     Raises:
         TypeError: as `identify`
@@ -79,16 +85,17 @@ def identify_joints(
     if len(by_joint) > MAX_JOINTS:
         raise ValueError(f"the files have {len(by_joint)} joints that move; at most {MAX_JOINTS} are taken: name one of them")
     found, refused, question = dict[str, Identified](), dict[str, str](), None
-    for joint, own in by_joint.items():
-        progress(f"joint {joint}")
-        of_joint = None if name is None else f"{name}, joint {joint}"
-        try:
-            found[joint] = identify(
-                start, MeasurementFiles(own, []), mapping=_of_joint(user_mapping, joint), accept=accept, name=of_joint
-            )
-        except ValueError as error:
-            refused[joint] = str(error)
-            question = question or (error if isinstance(error, QuestionError) and error.answers else None)
+    with in_turn(progress, len(by_joint)) as turn:
+        for joint, own in by_joint.items():
+            turn(f"joint {joint}")
+            of_joint = None if name is None else f"{name}, joint {joint}"
+            try:
+                found[joint] = identify(
+                    start, MeasurementFiles(own, []), mapping=_of_joint(user_mapping, joint), accept=accept, name=of_joint
+                )
+            except ValueError as error:
+                refused[joint] = str(error)
+                question = question or (error if isinstance(error, QuestionError) and error.answers else None)
     if question is not None and not found:
         raise question
     if not found:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from strainwave import Drive
@@ -16,6 +16,7 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
 from strainwave.identification.results.ratio import with_ratio
+from strainwave.progress import Progress, in_turn
 
 
 def predict(
@@ -23,7 +24,7 @@ def predict(
     files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
     mapping: Mapped = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> tuple[Prediction, ...]:
     """Compare later recordings of a joint with what its saved gear or drive predicts.
 
@@ -33,7 +34,7 @@ def predict(
         gear: the saved one: a gear set, the path of a gear file, a gear or a drive
         files: recordings in any format and order, as of `identify`
         mapping: what a person states of the files, as of `identify`
-        progress: called with the name of each file as its turn comes
+        progress: as of `sw.simulate`
 
     Returns:
         of each file the error, what the gear allows, and what changed; or why it cannot be predicted
@@ -56,14 +57,15 @@ def predict(
     gear_set = _gear_set(gear)
     read, gear_set = read_measurements(measurement_files(files), mapping, gear_set)
     found, results = list[Prediction](), list[FileResult]()
-    for file in read.values():
-        progress(file.path.name if isinstance(file, Recognised) else file.name)
-        result = _predicted(file, gear_set) if isinstance(file, Recognised) else file
-        if isinstance(result, FileResult):
-            results.append(result)
-            kind = "" if result.recognised is None else result.recognised.kind
-            result = Prediction(result.name, gear_set.name, kind, refused=result.refused)
-        found.append(result)
+    with in_turn(progress, len(read)) as turn:
+        for file in read.values():
+            turn(file.path.name if isinstance(file, Recognised) else file.name)
+            result = _predicted(file, gear_set) if isinstance(file, Recognised) else file
+            if isinstance(result, FileResult):
+                results.append(result)
+                kind = "" if result.recognised is None else result.recognised.kind
+                result = Prediction(result.name, gear_set.name, kind, refused=result.refused)
+            found.append(result)
     if all(each.refused for each in found):
         raise_question(results)
         raise ValueError(f"no file can be predicted: {'; '.join(f'{each.name}: {each.refused}' for each in found)}")

@@ -185,7 +185,8 @@ def _most_probable(
         assert first.record is not None
         what = listed(dict.fromkeys(way.effort.described for way in near if way.effort is not None))
         question = f"{first.effort.column} may be {what}, and neither its name nor a fit decides; {usual.shown(first.record)}"
-    ranked = sorted(near, key=lambda way: -way.evidence) if is_of_same_columns else near
+    asked = near + [ways[0] for ways in by_reading if not set(ways) & set(near)]
+    ranked = sorted(asked, key=lambda way: -way.evidence) if is_of_same_columns else asked
     raise QuestionError(one_line(question), [way.answer for way in ranked[:MAX_ANSWERS]])
 
 
@@ -223,6 +224,8 @@ def _read_so(way: _Way, ways: Sequence[_Way], source: MeasurementFile, usual: Us
     read = file if way.is_usual else recognise(source, file.mapping.updated(FileMapping(**effort.given)))
     tried = "; ".join(f"{_name_of(each)}: {each.shown}" for each in ways if each.effort is not None)
     taken = f"{effort.column} is read as {_name_of(way)}, as its friction is nearest to that of the start set"
+    if way.reading.answer.label:
+        taken = f"taken as most probable: {_name_of(way)}, with the friction and speed nearest to usual ones"
     remark = one_line(f"{taken}: {tried}; {usual.shown(record)}")
     why = tuple(each for each in read.why if not ("side" in way.reading.answer.given and GIVEN in each))
     return replace(read, question=None, alternatives=(), why=why, remarks=(remark, *read.remarks))

@@ -18,6 +18,7 @@ from strainwave.files.ratings import drive_of
 from strainwave.native import kernels
 from strainwave.native.kernels import JOBS, PUBLIC_JOBS, Job
 from strainwave.native.static_type import in_words
+from strainwave.presentation import Presented, Row, counted
 
 Array = NDArray[np.float64]
 ROOM_TEMPERATURE = 293.15  # K
@@ -45,7 +46,7 @@ class CompiledJob:
 
 
 @dataclass(frozen=True)
-class Compilation:
+class Compilation(Presented):
     """Kernels that were compiled for a drive. As a text, a table of them.
 
     Args:
@@ -62,9 +63,12 @@ class Compilation:
     drive: str
     jobs: tuple[CompiledJob, ...]
 
-    def __str__(self) -> str:
-        lines = [f"{each.job:20} {each.seconds:6.2f} s   {each.times_faster:5.1f} x" for each in self.jobs]
-        return "\n".join([self.drive, f"{'job':20} {'compiled':>8}   {'faster':>7}", *lines])
+    def _headline(self) -> str:
+        return f"{counted(len(self.jobs), 'job')} of {self.drive}"
+
+    def _rows(self) -> Iterator[Row]:
+        for each in self.jobs:
+            yield Row(each.job, each.seconds, "s", note=f"{each.times_faster:.1f} times faster")
 
 
 def compile(drive: Drive | GearSet, jobs: Sequence[str] = PUBLIC_JOBS) -> Compilation:

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.orders.turning import evenly
+from strainwave.presentation import Pictured
 from strainwave.statistics.spectrum import segment_power
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ MAX_STRETCH_COUNT = 100_000  # whose spectra are computed
 
 
 @dataclass(frozen=True, eq=False)
-class Campbell(ComparedByFields):
+class Campbell(ComparedByFields, Pictured):
     """Spectra of a column over the speed of a shaft.
 
     Attributes:
@@ -77,6 +78,10 @@ class Campbell(ComparedByFields):
             for each in values:
                 arguments.number(name, each, unit, brackets="()", low=0.0)
         return campbell_figure(self, [float(each) for each in orders], [float(each) / tau for each in eigenfrequencies])
+
+    def _headline(self) -> str:
+        low, high = (typeset.quantity(float(end), "rad/s") for end in (self.speed[0], self.speed[-1]))
+        return f"{self.column} over {low} to {high}, up to {typeset.quantity(float(self.frequency[-1]), 'Hz')}"
 
 
 def campbell(recording: Recording, column: str, *, speed: str = "input_speed", stretch: float = 0.5) -> Campbell:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import exp, inf, log, pi, sqrt
 
 from strainwave.orders.lines import SpectrumLine
+from strainwave.presentation import Presented
 
 RATIOS = range(30, 401)  # of strain wave gears
 USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
@@ -29,7 +30,7 @@ MIN_NEIGHBOUR_SHARE = 0.1  # probability of the neighbour over that of a ratio, 
 
 
 @dataclass(frozen=True)
-class RatioCandidate:
+class RatioCandidate(Presented):
     """A ratio that the lines may come from.
 
     Attributes:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
 from strainwave.orders.smooth_part import Moving, Shaft
+from strainwave.presentation import Presented
 from strainwave.statistics.floor import Floor, floor_under
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
@@ -47,7 +48,7 @@ class LinePart:
 
 
 @dataclass(frozen=True)
-class SpectrumLine:
+class SpectrumLine(Presented):
     """A line in the spectrum of a series.
 
     Attributes:

@@ -14,6 +14,7 @@ from strainwave.messages import listed
 from strainwave.orders.run_up import RunUp, is_run_up, run_up
 from strainwave.orders.torque_ripple import Ripple, Side, ripple
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
+from strainwave.presentation import Presented
 from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError
 
 EFFORTS = ("joint_torque", "torque", "input_torque", "current", "vibration")  # in which ripple is looked for, the best first
@@ -22,7 +23,7 @@ SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("outpu
 
 
 @dataclass(frozen=True, eq=False)
-class OrdersFound(ComparedByFields):
+class OrdersFound(ComparedByFields, Presented):
     """Orders of one recording.
 
     Attributes:

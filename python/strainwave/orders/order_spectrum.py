@@ -8,18 +8,23 @@ an order stays where it is while the speed changes, which a frequency does not.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from math import cos, isclose, pi, tau
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import quoted
+from strainwave.presentation import Pictured, Row, counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -28,7 +33,7 @@ MAX_VALUE = 1e150  # of a value, so that its square is a number, too
 
 
 @dataclass(frozen=True, eq=False)
-class Orders(ComparedByFields):
+class Orders(ComparedByFields, Pictured):
     """Orders of a shaft in a recorded column.
 
     Args:
@@ -56,6 +61,24 @@ class Orders(ComparedByFields):
     residual: float
     revolutions: int
     unit: str
+
+    def _headline(self) -> str:
+        left = typeset.quantity(self.residual, self.unit)
+        return f"{counted(len(self.order), 'order')} over {counted(self.revolutions, 'revolution')}, {left} rms left"
+
+    def _rows(self) -> Iterator[Row]:
+        for order, amplitude, phase in zip(self.order.tolist(), self.amplitude.tolist(), self.phase.tolist(), strict=True):
+            yield Row(f"order {order:g}", amplitude, self.unit, note=f"phase {typeset.number(float(np.degrees(phase)), 4)}°")
+        yield Row("mean", self.mean, self.unit)
+        yield Row("left", self.residual, self.unit, note="rms")
+
+    def plot(self) -> Figure:
+        """Return a figure of the amplitude over the order."""
+        from strainwave.drawing.simple import Series, stems_figure
+
+        return stems_figure(
+            "Orders of a revolution", Series("order", "1", self.order), Series("amplitude", self.unit, self.amplitude)
+        )
 
 
 class BearingOrders(NamedTuple):

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.order_waves import amplitudes_of, order_waves
 from strainwave.statistics.residuals import chance_of_gain
@@ -33,7 +34,7 @@ BINS_PER_TURN = 8 * MAX_ORDER  # of the spectrum of deviations: the highest orde
 
 
 @dataclass(frozen=True)
-class Positioning:
+class Positioning(Presented):
     """Positioning of an axis. All angles in rad; nan if the record does not determine a number.
 
     Attributes:

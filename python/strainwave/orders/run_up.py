@@ -5,9 +5,9 @@ An order is a wave of the shaft's angle, which excites the structure at the freq
 .. math:: y = \mathrm{Re} \sum_n \bigl(a_n + (b_n + j r c_n) H(f_n)\bigr) e^{j n \theta}, \qquad
           H(f) = \frac{1}{1 - r^2 + 2 j \zeta r}, \quad r = f / f_0
 
-(receptance of one degree of freedom). So receptance, mobility, transmissibility and the answer of an accelerometer to a
-force, :math:`r^2 H = -1 + (1 + 2 j \zeta r) H`, are covered. :math:`a_n` is what passes by the resonance. Amplitudes are
-linear; f0 and ζ of all orders together are searched.
+(receptance of one degree of freedom). Receptance, mobility, transmissibility and the answer of an accelerometer to a force,
+:math:`r^2 H = -1 + (1 + 2 j \zeta r) H`, are covered. :math:`a_n` is what passes by the resonance. Amplitudes are linear; f0
+and ζ of all orders together are searched.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.orders.lines import SpectrumLine
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
 from strainwave.typeset import number
@@ -58,7 +59,7 @@ class OrderPassing:
 
 
 @dataclass(frozen=True)
-class RunUp:
+class RunUp(Presented):
     """Vibration of a shaft whose speed varies.
 
     Attributes:

@@ -12,6 +12,7 @@ from strainwave import arguments
 from strainwave.messages import as_option
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
@@ -28,7 +29,7 @@ MIN_GRAVITY_SWING = 0.1  # rad of the output, above which gravity is separated f
 
 
 @dataclass(frozen=True)
-class Ratio:
+class Ratio(Presented):
     """Signed ratio of two shafts, input over output.
 
     Attributes:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import tau
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from strainwave import arguments
+from strainwave import arguments, typeset
+from strainwave.drawing import marks
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
@@ -27,6 +28,10 @@ from strainwave.orders.lines import (
 )
 from strainwave.orders.smooth_part import Moving, shaft_of
 from strainwave.orders.turning import Evenly
+from strainwave.presentation import Pictured, Reported, Row, counted
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Side = Literal["input", "output"]
 
@@ -45,7 +50,7 @@ MIN_GEAR_PERIODS = 3.0  # periods of the slowest order, that a record needs
 
 
 @dataclass(frozen=True, eq=False)
-class Ripple(ComparedByFields):
+class Ripple(ComparedByFields, Pictured, Reported):
     """Order lines in torque or current.
 
     Attributes:
@@ -91,6 +96,28 @@ class Ripple(ComparedByFields):
     spectrum: Recording
     curves: Recording
     remarks: tuple[str, ...]
+
+    def _headline(self) -> str:
+        ratio = f", ratio {' or '.join(map(str, self.concluded))}" if self.concluded else ""
+        lines = counted(len(self.lines), "line")
+        return f"{lines} in {self.column} over {self.revolutions:.3g} revolutions of the {self.side}{ratio}"
+
+    def _rows(self) -> Iterator[Row]:
+        for line in self.lines:
+            note = f"{line.kind}, by chance {typeset.number(line.false_alarm, 2)}"
+            yield Row(f"order {typeset.number(line.order, 5)}", line.amplitude, self.unit, line.sigma, note)
+        for each in self.candidates:
+            yield Row(f"probability of ratio {each.ratio}", each.share, "1")
+        yield Row("resolution of orders", self.resolution, "1")
+        yield Row("orders looked for", (self.lowest, self.highest), "1")
+
+    def plot(self) -> Figure:
+        """Return a figure of amplitude over order, with the noise, what a line needs, and the lines found."""
+        from strainwave.orders.pictures import draw_spectrum
+
+        with marks.new_figure(3.2, f"Ripple of {self.column.replace('_', ' ')}") as figure:
+            draw_spectrum(figure, self)
+        return figure
 
 
 def ripple(

@@ -11,12 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot, inf, pi, tau
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments, kinematic_error
+from strainwave import arguments, kinematic_error, typeset
+from strainwave.drawing import marks
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
@@ -24,6 +25,11 @@ from strainwave.messages import listed
 from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
 from strainwave.orders.stage import MAX_FREQUENCY, Regressed, StageProblem
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
+from strainwave.presentation import Pictured, Presented, Reported, Row, counted
+from strainwave.simulation.run import Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 Shaft = Literal["input", "mesh", "output"]
@@ -41,7 +47,7 @@ MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
 
 @dataclass(frozen=True)
-class MeasuredValue:
+class MeasuredValue(Presented):
     """Value with its standard deviation, in a unit."""
 
     value: float
@@ -50,7 +56,7 @@ class MeasuredValue:
 
 
 @dataclass(frozen=True)
-class ErrorOrder:
+class ErrorOrder(Presented):
     """Order of the transmission error.
 
     Attributes:
@@ -74,7 +80,7 @@ class ErrorOrder:
 
 
 @dataclass(frozen=True, eq=False)
-class TransmissionError(ComparedByFields):
+class TransmissionError(ComparedByFields, Pictured, Reported):
     """Ratio, kinematic error and lost motion of a gear from two encoders.
 
     Attributes:
@@ -127,6 +133,30 @@ class TransmissionError(ComparedByFields):
             phase=[each.phase for each in found],
         )
 
+    def _headline(self) -> str:
+        orders = counted(sum(each.significant for each in self.orders), "significant order")
+        noise = typeset.quantity(self.noise, "rad")
+        return f"ratio {self.ratio.value:.6g}, {orders} over {self.revolutions:.3g} revolutions, noise {noise}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("ratio", self.ratio.value, "1", self.ratio.sigma)
+        for each in sorted(self.orders, key=lambda order: -order.amplitude):
+            significant = "significant" if each.significant else "not significant"
+            note = f"phase {typeset.number(float(np.degrees(each.phase)), 3)}°, {significant}"
+            yield Row(f"order {each.order:.5g} of the {each.shaft}", each.amplitude, "rad", each.amplitude_sigma, note)
+        for name in ("lost_motion", "windup", "natural_frequency", "damping_ratio"):
+            if (measured := getattr(self, name)) is not None:
+                yield Row(name.replace("_", " "), measured.value, measured.unit, measured.sigma)
+        yield Row("noise", self.noise, "rad", note="rms of the residual")
+
+    def plot(self) -> Figure:
+        """Return a figure of the error over the record, its kinematic part and the residual."""
+        from strainwave.orders.pictures import draw_error
+
+        with marks.new_figure(3.8, "Transmission error") as figure:
+            draw_error(figure, self)
+        return figure
+
 
 def transmission_error(
     recording: Recording,
@@ -142,8 +172,9 @@ def transmission_error(
     Args:
         recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
             if the motion is not slow; and with `joint_torque`, `torque` or `current` for the wind-up
-        ratio: input over output, if it is known; used with all its digits. Its sign is that of the recorded angles, and a
-            remark follows if that differs. If both angles are counted in joint units, the input angle is multiplied by it
+        ratio: input over output, if it is known; used with all its digits; by default of a simulation that of its drive. Its
+            sign is that of the recorded angles, and a remark follows if that differs. If both angles are counted in joint
+            units, the input angle is multiplied by it
         orders: of the input to look for [1], shape (n,)
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability that noise makes any order significant
@@ -177,6 +208,8 @@ def transmission_error(
         raise ValueError("orders must be one series of positive numbers")
     false_alarm = arguments.probability("false_alarm", false_alarm)
     load = next((name for name in LOADS if name in recording), None)
+    if ratio is None and isinstance(recording, Run):
+        ratio = recording.end.drive.gear.kinematics.ratio
     pair = _pair(recording, load, rate)
     pair, measured = ratio_of(pair, ratio)
     size = measured.used

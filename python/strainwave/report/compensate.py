@@ -10,37 +10,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from strainwave import typeset
-from strainwave.drawing import marks
-from strainwave.drawing.style import FIGURE_WIDTH, LIGHT, RUNS
+from strainwave.drawing.style import FIGURE_WIDTH
 from strainwave.files import gear_file
 from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
-from strainwave.simulation.run import simulate
 from strainwave.tuning.candidates import EFFECTS
 from strainwave.tuning.compensate import Compensated
 from strainwave.tuning.judging import Judged
+from strainwave.tuning.pictures import draw_errors
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    pass
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 MAX_LISTED = 8  # controllers on a terminal
-
-
-def verdict(found: Compensated) -> str:
-    """Return in one sentence what the compensation gains over the baseline."""
-    figure, unit = found.goal.judged_by, found.goal.units[found.goal.judged_by]
-    before = typeset.quantity(found.baseline.median(figure), unit)
-    after = typeset.quantity(found.chosen.median(figure), unit)
-    if not found.is_compensated:
-        cascade = f"the {found.baseline.candidate.name}, whose {figure} is {before}"
-        return f"{found.gear_set.name}: no compensation gains over {cascade} in the median of {found.members} gears drawn anew."
-    return (
-        f"{found.gear_set.name}: {found.chosen.candidate.name} brings the {figure} from {before} to {after} "
-        f"(−{100.0 * found.gain:.0f} %), in the median of {found.members} gears drawn anew."
-    )
 
 
 def compensate_summary(found: Compensated) -> str:
@@ -49,7 +34,7 @@ def compensate_summary(found: Compensated) -> str:
 
 
 def _lines(found: Compensated) -> Iterator[str]:
-    yield verdict(found)
+    yield found.verdict
     on = f"{found.goal.judged_by} on the gears by which one was chosen"
     yield f"  {on}: the gear as it is stated, median, 95 % below; median of {found.goal.secondary_figure}"
     for judged in found.tried[: 1 + MAX_LISTED]:
@@ -154,7 +139,7 @@ def _table(document: str, name: str) -> str:
 def _results(found: Compensated) -> dict[str, Any]:
     return {
         "made_by": f"strainwave {metadata.version('strainwave')}",
-        "verdict": verdict(found).replace(NO_BREAK_SPACE, " "),
+        "verdict": found.verdict.replace(NO_BREAK_SPACE, " "),
         "goal": found.goal.name,
         "judged_by": found.goal.judged_by,
         "units": dict(found.goal.units),
@@ -202,7 +187,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
         "compensate.html.jinja",
         {
             "name": found.gear_set.name,
-            "verdict": verdict(found),
+            "verdict": found.verdict,
             "figure": figure,
             "cascade": found.baseline.candidate.name,
             "rows": [
@@ -228,7 +213,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "remarks": found.remarks,
             "members": found.members,
             "picture_shows": f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}",
-            "picture": figures.inline(lambda canvas: _errors(canvas, found), (FIGURE_WIDTH, 3.0), "errors", _title(found)),
+            "picture": figures.inline(lambda canvas: draw_errors(canvas, found), (FIGURE_WIDTH, 3.0), "errors", _title(found)),
         },
         provenance,
     )
@@ -236,19 +221,3 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
 
 def _title(found: Compensated) -> str:
     return f"Error of the output of {found.gear_set.name}: cascade, and with the compensation chosen"
-
-
-def _errors(canvas: Figure, found: Compensated) -> None:
-    """Draw the error of the output over time, of the gear as it is stated; as a torque if that is the goal."""
-    axes = canvas.add_subplot()
-    command = found.goal.command
-    name, unit = ("error of the torque", "N.m") if found.goal.name == "torque" else ("error of the output", "rad")
-    runs = {"cascade": found.baseline} | ({"compensated": found.chosen} if found.is_compensated else {})
-    for (label, judged), (colour, line, width) in zip(runs.items(), (RUNS[1], RUNS[0]), strict=False):
-        control: Any = judged.candidate.drive.control
-        sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
-        run = simulate(judged.candidate.drive, command, sample=sample)
-        error = found.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
-        marks.curve(axes, run.time, error, color=LIGHT[colour], linestyle=line, linewidth=width, label=label)
-    marks.label_axes(axes, name, unit, "time", "s")
-    marks.legend(canvas, axes)

@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
+from strainwave.orders.pictures import draw_error, draw_spectrum
 from strainwave.orders.torque_ripple import Ripple
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.report import figures
@@ -27,24 +28,9 @@ MIN_BLOCK_SAMPLES = 8  # samples of a block that can show anything
 
 def spectrum_figure(ripple: Ripple, name: str) -> str:
     """Return the figure of amplitude over order, with floor, threshold and lines."""
-
-    def draw(figure: Figure) -> None:
-        axes = figure.subplots()
-        spectrum = ripple.spectrum
-        order = spectrum["order"]
-        marks.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
-        marks.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
-        marks.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
-        for kind, colour, mark in (("order", "model", "o"), ("time", "held-out", "x"), ("either", "earlier", "s")):
-            lines = [line for line in ripple.lines if line.kind == kind and line.order <= ripple.highest]
-            if lines:
-                where = [line.order for line in lines], [line.amplitude for line in lines]
-                axes.plot(*where, mark, color=LIGHT[colour], label={"either": "order or time"}.get(kind, f"{kind} line"))
-        axes.set_ylim(bottom=0.0)
-        marks.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
-        marks.legend(figure, axes)
-
-    return figures.inline(draw, (FIGURE_WIDTH, 3.0), name, "Amplitude of ripple over its order")
+    return figures.inline(
+        lambda figure: draw_spectrum(figure, ripple), (FIGURE_WIDTH, 3.0), name, "Amplitude of ripple over its order"
+    )
 
 
 def map_figure(ripple: Ripple, name: str) -> str:
@@ -85,23 +71,9 @@ def map_figure(ripple: Ripple, name: str) -> str:
 
 def error_figure(error: TransmissionError, name: str) -> str:
     """Return the figure of the transmission error over the record, its orders and its residual."""
-    curves = error.curves
-    timed = "time" in curves
-    x = curves["time"] if timed else curves["input_angle"] / tau
-
-    def draw(figure: Figure) -> None:
-        whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-        marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
-        marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
-        marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
-        residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-        marks.label_axes(whole, "at the output", "rad")
-        marks.label_axes(
-            residual, "left by orders and loads", "rad", "time" if timed else "revolutions of the input", "s" if timed else "1"
-        )
-        marks.legend(figure, whole)
-
-    return figures.inline(draw, (FIGURE_WIDTH, 3.6), name, "Transmission error, kinematic error and residual")
+    return figures.inline(
+        lambda figure: draw_error(figure, error), (FIGURE_WIDTH, 3.6), name, "Transmission error, kinematic error and residual"
+    )
 
 
 def turn_figure(error: TransmissionError, name: str) -> str:

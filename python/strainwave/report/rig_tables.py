@@ -23,7 +23,7 @@ from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2
 from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number
 
 OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin
-BAND = (0.1, 0.2)  # N.m: where document T saw its soft spot
+BAND = (0.1, 0.2)  # N.m: where the torsional stiffness article saw its soft spot
 TITLES: dict[Definition, str] = {
     "softest": "Stiffness of the softest straight stretch of each regime",
     "regression": "Stiffness by regression: one straight line through each regime",
@@ -38,7 +38,8 @@ def ratio_of(found: Evaluation) -> float | None:
     return abs(float(found.gear_set.gear.kinematics.ratio))
 
 
-# ---- Document T's Table 2 --------------------------------------------------------------------------------------------
+# ---- The torsional stiffness article's Table 2
+# --------------------------------------------------------------------------------------------
 
 
 def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]:
@@ -59,7 +60,7 @@ def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]
 
 
 def document_rows() -> Iterator[list[str]]:
-    """Document T's own table, how far it is from closed, and under which reading it is."""
+    """The torsional stiffness article's own table, how far it is from closed, and under which reading it is."""
     for position, (*slopes, width) in TABLE_2.items():
         gap = degrees(closure_of_secants(slopes, PEAK_TORQUE))
         parts = soft_parts(slopes, float(np.radians(width)), PEAK_TORQUE)
@@ -105,7 +106,7 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
     where = "" if wide is None else f", here at {number(round(wide.torque, 4), 3)} N·m"
     yield angle(
         "Hysteresis",
-        f"widest separation of the branches at equal torque, as document T has it{where}",
+        f"widest separation of the branches at equal torque, as the torsional stiffness article has it{where}",
         None if wide is None else wide.width,
     )
     yield angle("Width at zero torque", "separation of the branches after the peaks of this cycle", analysis.width_at_zero)
@@ -152,7 +153,7 @@ def _soft_rows(analysis: LoopAnalysis) -> Iterator[list[str]]:
 
 
 def _band(analysis: LoopAnalysis) -> Iterator[str]:
-    """Yield words on document T's soft spot, if the loop reaches that torque."""
+    """Yield words on the torsional stiffness article's soft spot, if the loop reaches that torque."""
     if analysis.loop.side != "input" or max(map(abs, analysis.peaks)) < BAND[0]:
         return
     for name in ("negative_loading", "positive_loading"):
@@ -265,16 +266,16 @@ def _budget(budget: Budget) -> dict[str, Any]:
     }
 
 
-DOCUMENT = "document T, “Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis”"
+ARTICLE = "the torsional stiffness article, “Harmonic Drive Torsional Stiffness: Measurement and Hysteresis Analysis”"
 SOURCES = {
-    "Form of the table, rig, cycle of five steps": f"{DOCUMENT}, Tables 1 and 2; corrected by the errata E-T1 to E-T13",
-    "Torque of a couple: m is the total of both pans of a pair": "document T; erratum E-T7",
-    "Angle from two markers by atan2, followed from photograph to photograph": "erratum E-T1",
-    "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum E-T2",
+    "Form of the table, rig, cycle of five steps": f"{ARTICLE}, Tables 1 and 2; corrected by its errata 1 to 13",
+    "Torque of a couple: m is the total of both pans of a pair": "the torsional stiffness article; its erratum 7",
+    "Angle from two markers by atan2, followed from photograph to photograph": "erratum 1 of that article",
+    "Centres of the markers: circle, or ellipse, fitted by distance to sub-pixel edges": "erratum 2 of that article",
     "Regression with errors in torque and angle": "York2004",
     "Differences between groups of repeated loops": "Welch1951",
     f"Soft spot: local compliance beyond {number(SOFT_COMPLIANCE_RATIO)} times that of the regime's regression, "
-    "by more than chance": "a definition of this package; document T gives none",
+    "by more than chance": "a definition of this package; the torsional stiffness article gives none",
     "Hysteresis loss, lost motion": "catalogues: at zero torque after ± rated torque, and at ± 4 % of rated torque",
     "Uncertainty: the squares of independent contributions add up": "GUM (JCGM 100:2008), Eq. 10",
 }

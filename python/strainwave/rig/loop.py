@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,10 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import shortened
+from strainwave.presentation import Pictured
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 # Sizes of all numbers of loops, rigs and steps in SI units, unless they are 0: beyond, products of a few overflow.
@@ -22,7 +26,7 @@ COLUMNS: dict[Side, tuple[str, str]] = {"input": ("input_angle", "input_torque")
 
 
 @dataclass(frozen=True, eq=False)
-class Loop(ComparedByFields):
+class Loop(ComparedByFields, Pictured):
     """Angle of a loaded shaft and the torque on it, the other shaft held, in the order measured.
 
     Args:
@@ -51,7 +55,7 @@ class Loop(ComparedByFields):
 
     >>> loop = Loop([0.0, 0.1, 0.0], [0.0, 0.03, 0.0], side="input", name="example")
     >>> loop.recording()
-    <Recording "example": 3 samples; input_angle [rad], input_torque [N.m]>
+    <Recording: "example": 3 samples; input_angle [rad], input_torque [N.m]>
     """
 
     angle: Array
@@ -127,6 +131,16 @@ class Loop(ComparedByFields):
         if self.temperature is not None:
             columns, units = {**columns, "temperature": self.temperature}, {**units, "temperature": "K"}
         return Recording(columns, units, self.name)
+
+    def _headline(self) -> str:
+        return f"{self.name or 'loop'} at the {self.side}, {len(self.angle)} points"
+
+    def plot(self) -> Figure:
+        """Return a figure of the angle over the torque."""
+        from strainwave.drawing.simple import Series, points_figure
+
+        title = f"Loop at the {self.side}{f', {self.name}' if self.name else ''}"
+        return points_figure(title, Series("torque", "N.m", self.torque), Series("angle", "rad", self.angle))
 
 
 def positive(name: str, value: object, unit: str = "") -> float:

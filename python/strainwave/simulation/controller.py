@@ -14,11 +14,12 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.messages import shortened
 from strainwave.native import kernels
+from strainwave.progress import Progress, by_count
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Initial, beginning_numbers
 from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
-from strainwave.simulation.run import Course, Run, check_meaning, progressing, recorded_of
+from strainwave.simulation.run import Course, Run, check_meaning, recorded_of
 from strainwave.simulation.scenario import Scenario
 
 Array = NDArray[np.float64]
@@ -76,7 +77,7 @@ def simulate_controlled(
     inputs: Mapping[str, Scenario | float] | None = None,
     initial: Initial | None = None,
     record: Sequence[str] | None = None,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive under a controller that is a function of Python.
 
@@ -135,7 +136,7 @@ def simulate_controlled(
     longest = course.time_grid.longest
     course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     given = excitation.over(course.time_grid.instants)
-    with progressing(progress, len(given)) as shown:
+    with by_count(progress, "simulating", len(given)) as shown:
         outputs, state = _run(course, state, given, actions, controller, shown)
     outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
     check_meaning(course.time, recorded, outputs, remedy(longest))

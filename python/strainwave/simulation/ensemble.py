@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -22,6 +22,8 @@ from strainwave.files.writing import claiming, making
 from strainwave.messages import listed, one_line, quoted
 from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
+from strainwave.presentation import Pictured, Row, counted
+from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Known, known as initial_of
@@ -34,7 +36,6 @@ from strainwave.simulation.resolution import (
     too_coarse,
     too_stiff,
 )
-from strainwave.simulation.run import progressing
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
 from strainwave.simulation.threads import available_threads
@@ -81,7 +82,7 @@ class EnsembleWarning(UserWarning):
 
 
 @dataclass(frozen=True, eq=False)
-class Ensemble(ComparedByFields):
+class Ensemble(ComparedByFields, Pictured):
     """Runs of many members through one command.
 
     Args:
@@ -193,6 +194,19 @@ class Ensemble(ComparedByFields):
             ValueError: as `read`, or no member is there
         """
         return _read(EnsembleFolder.open(Path(folder)))
+
+    def _headline(self) -> str:
+        failed = f", {len(self.failures)} without a result" if self.failures else ""
+        span = f"from {self.time[0]:g} s to {self.time[-1]:g} s"
+        return f"{counted(len(self), 'member')}{failed}, {len(self.time)} samples {span}"
+
+    def _rows(self) -> Iterator[Row]:
+        for path, values in self.parameters.items():
+            yield Row(path, (float(values.min()), float(values.max())), note="of the members")
+        for name, values in self.columns.items():
+            if len(self.failures) < len(self):
+                yield Row(name, (float(np.nanmin(values)), float(np.nanmax(values))), self.units[name])
+        yield from (Row(f"member {number}", reason) for number, reason in self.failures.items())
 
 
 def _read(files: EnsembleFolder) -> Ensemble:
@@ -348,7 +362,7 @@ def simulate_many(
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     backend: Backend = "cpu",
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Ensemble:
     """Run a drive many times through one command, each time with other numbers, on all cores.
 
@@ -395,7 +409,7 @@ def simulate_many(
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
     plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     try:
-        with progressing(progress, plan.members * plan.steps) as shown:
+        with by_count(progress, "simulating", plan.members * plan.steps) as shown:
             ensemble = plan.run(0, plan.members, shown)
     except MemoryError:
         size = f"{1e-9 * 8 * plan.members * len(plan.recorded) * len(plan.time):.3g} GB"
@@ -419,7 +433,7 @@ def simulate_to(
     initial: Mapping[str, ArrayLike] | None = None,
     threads: int | None = None,
     backend: Backend = "cpu",
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Path:
     """Run an ensemble as `simulate_many`, and write the members to files as they come: memory stays flat for any count.
 
@@ -457,7 +471,7 @@ def simulate_to(
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
     plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     folder, failures = Path(folder), dict[int, str]()
-    with making(folder), claiming(folder), progressing(progress, plan.members * plan.steps) as shown:
+    with making(folder), claiming(folder), by_count(progress, "simulating", plan.members * plan.steps) as shown:
         files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
         for part in files.parts():
             if not files.has(part):

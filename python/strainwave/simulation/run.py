@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any, Literal, NamedTuple, get_args
 
@@ -16,6 +15,7 @@ from strainwave.files.ratings import drive_of, warn_of_ratings
 from strainwave.files.recording import GENERATED_TITLE, Recording
 from strainwave.messages import listed
 from strainwave.native import kernels
+from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
 from strainwave.simulation.initial import Initial, beginning_numbers, known
@@ -101,7 +101,7 @@ def simulate(
     initial: Initial | None = None,
     record: Sequence[str] | None = None,
     method: Method | None = None,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive through a command and record its outputs.
 
@@ -128,7 +128,8 @@ def simulate(
             from the other; the twist as the one at which load and friction do not accelerate the output; bristles, motor and
             sensors as they are once they have settled
         record: the outputs to keep, by name; all, if not given
-        progress: show a progress bar
+        progress: None shows a bar on a terminal after a second, True at once, False none; a function is called with a stage
+            and the share done
 
     Returns:
         Recording with columns time [s], command, input_angle [rad], input_speed [rad/s], output_angle [rad], output_speed
@@ -187,7 +188,7 @@ def simulate(
         course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
     taken = method or "exponential"
     outputs, first, steps = course.beginning(state, excitation.first()), 1, len(time_grid.instants) - 1
-    with kernels.prepared(drive, "simulate", steps), progressing(progress, steps) as shown:
+    with kernels.prepared(drive, "simulate", steps), by_count(progress, "simulating", steps) as shown:
         for number, (instants, keep) in enumerate(time_grid.chunks()):
             report = None if shown is None else lambda done, n=number, show=shown: show(n * STEPS_PER_CHUNK + done)
             laid_out, steps_by = excitation.over(instants), _core.Method[taken]
@@ -307,7 +308,7 @@ def simulate_adaptively(
     initial: Initial | None = None,
     record: Sequence[str] | None = None,
     max_steps: int = 10_000_000,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> Run:
     """Run a drive through a command in steps as long as a tolerance allows.
 
@@ -360,7 +361,7 @@ def simulate_adaptively(
     channels = [each.channel for each in recorded.values()]
     outputs = beginning(drive, state, excitation.first(), channels, len(samples))
     kernels.prepare(drive, "simulate_adaptively", len(ends))
-    with progressing(progress, len(ends) - 1) as shown:
+    with by_count(progress, "simulating", len(ends) - 1) as shown:
         state, accepted, rejected = _core.simulate_adaptively(
             drive, state, *excitation.signals, ends, rtol, atol, max_steps, samples[1:], channels, outputs, 1, shown
         )
@@ -446,16 +447,3 @@ def _finite(end: State, what_to_do: str) -> State:
 
 def _largest_twist(twist: Array) -> float:
     return float(np.abs(twist).max())
-
-
-@contextmanager
-def progressing(wanted: bool, total: int) -> Iterator[Callable[[int], None] | None]:
-    if not wanted:
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(transient=True, console=Console(stderr=True)) as bar:
-        task = bar.add_task("simulating", total=total)
-        yield lambda done: bar.update(task, completed=done)

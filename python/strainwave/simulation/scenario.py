@@ -15,16 +15,19 @@ commanded, rad for a position-controlled drive, V for an open-loop motor; a scen
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Real
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import _core, arguments
+from strainwave import _core, arguments, typeset
 from strainwave.files.recording import Recording
 from strainwave.messages import shortened
+from strainwave.presentation import DIGITS, Pictured, Row, counted
 from strainwave.simulation.memory import check_instants, room_for
 
 __all__ = [
@@ -38,8 +41,11 @@ __all__ = [
     "step",
     "table",
 ]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+DRAWN_POINTS = 2000  # of a command
 MAX_PULSES = 1e6  # of a pulse train
 MIN_DURATION = 1e-30  # s: so short that its reciprocal and its square are still finite
 
@@ -67,7 +73,7 @@ class Wave:
 
 
 @dataclass(frozen=True, eq=False)
-class Scenario:
+class Scenario(Pictured):
     """A command over [0, duration]: a line in pieces plus waves. Made by `step`, `sine`, `table`, …; see the module.
 
     Piece k is `level[k] + slope[k] * (t - start[k])` and holds from start[k] until start[k + 1].
@@ -250,6 +256,41 @@ class Scenario:
             raise ValueError(f"time = {outside[0]} s lies outside the scenario, [0, {self.duration}] s")
         values, rates = self.signal.at(times, before)
         return values, rates
+
+    def _headline(self) -> str:
+        waves = f", {counted(len(self.waves), 'wave')}" if self.waves else ""
+        low, high = (typeset.number(end, DIGITS) for end in self._range)
+        return f"{self.duration:g} s, {counted(len(self.start), 'piece')}{waves}, {low} to {high}"
+
+    @property
+    def _range(self) -> tuple[float, float]:
+        _, values = self._drawn
+        return float(values.min()), float(values.max())
+
+    @property
+    def _drawn(self) -> tuple[Array, Array]:
+        times = np.linspace(0.0, self.duration, DRAWN_POINTS)
+        return times, np.asarray(self.value(times))
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("duration", self.duration, "s")
+        yield Row("command", self._range, note="in the unit of what it commands")
+        yield Row("pieces", len(self.start))
+        for number, wave in enumerate(self.waves, start=1):
+            yield Row(f"amplitude of wave {number}", wave.amplitude)
+            yield Row(f"frequency of wave {number}", wave.frequency, "Hz")
+
+    def plot(self, name: str = "command", unit: str = "1") -> Figure:
+        """Return a figure of the command over time.
+
+        Args:
+            name: of what it commands
+            unit: of that
+        """
+        from strainwave.drawing.simple import Series, curve_figure
+
+        times, values = self._drawn
+        return curve_figure(f"{name.capitalize()} over time", Series("time", "s", times), Series(name, unit, values))
 
 
 def constant(value: float, duration: float) -> Scenario:

@@ -27,6 +27,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.presentation import Presented
 from strainwave.simulation import scenario
 from strainwave.simulation.initial import QUANTITIES
 from strainwave.simulation.run import Run, simulate, simulate_adaptively
@@ -88,7 +89,7 @@ DIFFERENCES = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC
 
 
 @dataclass(frozen=True)
-class ScenarioFile:
+class ScenarioFile(Presented):
     """Scenario of a run: its command, the other inputs of the drive, and its initial values.
 
     Args:

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.messages import listed, shortened
+from strainwave.presentation import Presented, Row
 
 Array = NDArray[np.float64]
 
 
-class State(Mapping[str, float]):
+class State(Presented, Mapping[str, float]):
     """A drive at one instant: its continuous numbers, what its parts remember, and which way its shafts slip.
 
     A mapping of names to numbers. The numbers of a part have its name in front: ``state["friction_input.deflection"]``.
@@ -110,8 +111,11 @@ class State(Mapping[str, float]):
     def __hash__(self) -> int:
         return hash((tuple(_core.shape(self.drive).items()), tuple(self.numbers.tolist())))
 
-    def __repr__(self) -> str:
-        return f"State({', '.join(f'{name}={value:.6g}' for name, value in self.items() if value != 0.0)})"
+    def _headline(self) -> str:
+        return ", ".join(f"{name}={value:.6g}" for name, value in self.items() if value != 0.0)
+
+    def _rows(self) -> Iterator[Row]:
+        return (Row(name, value, self.units[name]) for name, value in self.items())
 
     def __reduce__(self) -> tuple[Any, ...]:
         return State.of, (self.drive, np.array(self.numbers))

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.messages import listed
+from strainwave.presentation import Statement
 from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ UNIT_TOLERANCE = 1e-3  # relative: a factor that is nearer to 1 is not written
 
 
 @dataclass(frozen=True)
-class DeterminedSum:
+class DeterminedSum(Statement):
     """Sum of parameters that is determined while its terms are not.
 
     Attributes:
@@ -47,7 +48,7 @@ class DeterminedSum:
     sigma: float
     unit: str
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         last = [path.rpartition(".")[2] for path in self.paths]
         names = last if len(set(last)) == len(last) else self.paths
         return f"{sum_in_words(names, self.factors)} = {self.value:.5g} ± {self.sigma:.2g} {self.unit}"

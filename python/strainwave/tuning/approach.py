@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Gear, arguments
+from strainwave import Gear, arguments, typeset
+from strainwave.presentation import Pictured, Presented, counted
 from strainwave.simulation import scenario
 from strainwave.simulation.memory import check_instants
 from strainwave.simulation.scenario import Scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -23,7 +27,7 @@ DEFAULT_FACTOR = 1.2  # overshoot over lost motion
 
 
 @dataclass(frozen=True)
-class LostMotion:
+class LostMotion(Presented):
     """Lost motion of a gear whose output turns back under a load torque.
 
     Attributes:
@@ -66,6 +70,10 @@ class LostMotion:
         """
         return arguments.number("factor", factor, "", "[)", 1.0) * self.extent
 
+    def _headline(self) -> str:
+        width, extent = (typeset.quantity(angle, "rad") for angle in (self.width, self.extent))
+        return f"width {width}, extent {extent} at the output, load {typeset.quantity(self.load_torque, 'N.m')}"
+
 
 def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> LostMotion:
     r"""Return the lost motion of a gear between both senses of motion, from its quasi-static loop.
@@ -96,11 +104,11 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
             the torque change its size
 
     Source:
-        document T, section "Discussion" (unidirectional positioning); the loop: own derivation
+        the torsional stiffness article, section "Discussion" (unidirectional positioning); the loop: own derivation
 
     >>> import math
     >>> import strainwave as sw
-    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # document T, 0.36 N.m at the input of 1:100
+    >>> lost = lost_motion(sw.rig.printed_gear(0), swing=36.0)  # of the article, 0.36 N.m at the input of 1:100
     >>> round(math.degrees(lost.input_width), 6)
     50.5
     """
@@ -130,7 +138,7 @@ def friction_at_rest(law: Any, load: float = 0.0) -> float:
 
 
 @dataclass(frozen=True)
-class PositioningPath:
+class PositioningPath(Pictured):
     """A path that visits targets and rests at each.
 
     Attributes:
@@ -147,6 +155,13 @@ class PositioningPath:
     command: Scenario
     targets: Array
     rests: Array
+
+    def _headline(self) -> str:
+        return f"{counted(len(self.targets), 'target')} in {typeset.quantity(self.command.duration, 's')}"
+
+    def plot(self) -> Figure:
+        """Return a figure of the commanded angle of the output over time."""
+        return self.command.plot("angle of the output", "rad")
 
 
 def positioning_path(
@@ -188,7 +203,7 @@ def positioning_path(
         ValueError: there is no target, a number is not finite or out of its range, or the path has too many pieces
 
     Source:
-        document T, section "Discussion"; motion of minimum jerk: FlashHogan1985
+        the torsional stiffness article, section "Discussion"; motion of minimum jerk: FlashHogan1985
 
     >>> path = positioning_path([0.2, 0.1], 0.02, speed=1.0, acceleration=10.0)
     >>> [round(float(path.command.value(time)), 9) for time in path.rests]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Compensation, Drive, Gear, _core, compensation, stiffness
+from strainwave.presentation import Presented
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning.cascade import (
     RIGID_STIFFNESS,
@@ -55,7 +56,7 @@ ANGLES_PER_TURN = 720  # of the input, at which the slope of an error is taken
 
 
 @dataclass(frozen=True)
-class ControllerCandidate:
+class ControllerCandidate(Presented):
     """A controller with a compensation.
 
     Attributes:

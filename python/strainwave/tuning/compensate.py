@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, arguments, loads
+from strainwave import Drive, arguments, loads, typeset
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
+from strainwave.presentation import Pictured, Reported, Row
+from strainwave.progress import Progress, in_turn
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting
@@ -22,6 +24,9 @@ from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.judging import AT_LIMIT, Judged, judged
 from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, Loops, margins_of, sharpest
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -48,7 +53,7 @@ MEASUREMENTS = {
 
 
 @dataclass(frozen=True)
-class Compensated:
+class Compensated(Pictured, Reported):
     """Result of `compensate`: the drive with its controller, and the figures of every candidate.
 
     Attributes:
@@ -108,6 +113,44 @@ class Compensated:
         alike = (each for each in self.tried if each.candidate.is_plain and each.candidate.setting == setting)
         return next((each for each in alike if each.candidate.effects == effects), None)
 
+    @property
+    def verdict(self) -> str:
+        """What the compensation gains over the baseline, in one sentence."""
+        figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
+        before = typeset.quantity(self.baseline.median(figure), unit)
+        after = typeset.quantity(self.chosen.median(figure), unit)
+        if not self.is_compensated:
+            cascade = f"the {self.baseline.candidate.name}, whose {figure} is {before}"
+            return (
+                f"{self.gear_set.name}: no compensation gains over {cascade} in the median of {self.members} gears drawn anew."
+            )
+        return (
+            f"{self.gear_set.name}: {self.chosen.candidate.name} brings the {figure} from {before} to {after} "
+            f"(−{100.0 * self.gain:.0f} %), in the median of {self.members} gears drawn anew."
+        )
+
+    def _headline(self) -> str:
+        return self.verdict
+
+    def _rows(self) -> Iterator[Row]:
+        figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
+        yield Row(f"{figure} of the cascade", self.baseline.median(figure), unit, note="median of the gears drawn")
+        yield Row(f"{figure} with the controller", self.chosen.median(figure), unit, note="median")
+        yield Row("and in 95 % of the gears below", self.chosen.upper(figure), unit)
+        yield Row("controller", self.chosen.candidate.name)
+        yield from self.margins._rows()
+        for tried in self.tried:
+            yield Row(tried.candidate.name, tried.median(figure), unit, note="median, when it was chosen")
+
+    def plot(self) -> Figure:
+        """Return a figure of the error of the output over time: of the cascade, and of the controller chosen."""
+        from strainwave.drawing import marks
+        from strainwave.tuning.pictures import draw_errors
+
+        with marks.new_figure(3.2, f"Error of {self.gear_set.name}") as figure:
+            draw_errors(figure, self)
+        return figure
+
 
 def compensate(
     drive: GearSet | Drive | str | Path,
@@ -121,7 +164,7 @@ def compensate(
     torque: float | None = None,
     members: int = 40,
     seed: int = 0,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Compensated:
     """Return the compensation that gains most over a tuned cascade, judged on gears that a drive may have.
 
@@ -137,7 +180,7 @@ def compensate(
         torque: of the output for the goal of torque, from end to end [N.m]; a fifth of the largest one if not given
         members: number of drawn gears
         seed: of the draw
-        progress: called with what is done next
+        progress: as of `sw.simulate`
 
     Returns:
         The controller chosen, its gain over the cascade, and the figures of all candidates. If no compensation gains, the
@@ -171,26 +214,27 @@ def compensate(
 
     wanted = _long_enough(goal_at(1.0), plant)
     draws, anew = (_drawn(gear_set, plant, members, each, known_load=goal == "torque") for each in (seed, seed + 1))
-    cascades = _cascades(plant, wanted, draws, encoder, progress)
-    best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, progress)
-    chosen = _chosen(best, others, wanted)
-    before, after = _judged_anew(best, chosen, wanted, anew, plant)
-    remarks = list(_remarks(gear_set, plant, wanted, best))
-    if chosen is not best and after is before:
-        remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
-    progress("other conditions")
-    return Compensated(
-        gear_set,
-        wanted,
-        (best, *others),
-        before,
-        after,
-        members,
-        Loops.of(plant, after.candidate.drive.control).margins(),
-        tuple(over_compensation((before, after), wanted, plant)),
-        tuple(conditions((before, after), goal_at, anew, plant)),
-        tuple(remarks),
-    )
+    with in_turn(progress) as turn:
+        cascades = _cascades(plant, wanted, draws, encoder, turn)
+        best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, turn)
+        chosen = _chosen(best, others, wanted)
+        before, after = _judged_anew(best, chosen, wanted, anew, plant)
+        remarks = list(_remarks(gear_set, plant, wanted, best))
+        if chosen is not best and after is before:
+            remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
+        turn("other conditions")
+        return Compensated(
+            gear_set,
+            wanted,
+            (best, *others),
+            before,
+            after,
+            members,
+            Loops.of(plant, after.candidate.drive.control).margins(),
+            tuple(over_compensation((before, after), wanted, plant)),
+            tuple(conditions((before, after), goal_at, anew, plant)),
+            tuple(remarks),
+        )
 
 
 def _refuse_unused(goal: str, **options: float | None) -> None:
@@ -219,16 +263,14 @@ def _long_enough(goal: Goal, plant: Plant) -> Goal:
     return goal
 
 
-def _cascades(
-    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None]
-) -> list[Judged]:
+def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None]) -> list[Judged]:
     """Return the best cascade of each encoder that the controller sees, the better one first.
 
     Raises:
         ValueError: no run under the better one came to its end
     """
     encoders = ("input", "output") if encoder == "output" else ("input",)
-    found = [best_cascade(plant, goal, draws, each, progress) for each in encoders]
+    found = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
     found.sort(key=lambda each: each.upper(goal.judged_by))
     best = found[0]
     if best.failures == len(best.figures[goal.judged_by]):
@@ -245,12 +287,12 @@ def _advice(best: Judged, goal: Goal, plant: Plant) -> str:
 
 
 def _judged_candidates(
-    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], progress: Callable[[str], None]
+    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], turn: Callable[[str], None]
 ) -> list[Judged]:
     """Return all compensations of these cascades, best first."""
     others = []
     for candidate in candidates(plant, [each.candidate.setting for each in cascades], goal, draws):
-        progress(candidate.name)
+        turn(candidate.name)
         others.append(judged(candidate, goal, draws, plant))
     return sorted(others, key=lambda each: each.median(goal.judged_by))
 
@@ -291,7 +333,7 @@ def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
 
 
 def best_cascade(
-    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, progress: Callable[[str], None] = lambda stage: None
+    plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None] = lambda name: None
 ) -> Judged:
     """Return the cascade of which 95 % of the drawn gears stay below the least, of all settings of an encoder."""
     tried = []
@@ -299,7 +341,7 @@ def best_cascade(
         largest = sharpest(plant, encoder, observer_share)
         for share in SHARPNESS_SHARES:
             setting = replace(largest, sharpness=share * largest.sharpness)
-            progress(f"cascade, {encoder} encoder, sharpness {setting.sharpness:.2g}, observer {observer_share:g}")
+            turn(f"cascade, {encoder} encoder, sharpness {setting.sharpness:.2g}, observer {observer_share:g}")
             tried.append(judged(baseline(plant, setting), goal, draws, plant))
     return min(tried, key=lambda found: found.upper(goal.judged_by))
 

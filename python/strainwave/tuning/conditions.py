@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 from strainwave.tuning.candidates import EFFECTS
 from strainwave.tuning.cascade import Plant
 from strainwave.tuning.drawn import scales
@@ -28,7 +29,7 @@ SPEED_OF_FRICTION = 20.0  # rad/s of the input, at which friction is compared be
 
 
 @dataclass(frozen=True)
-class ConditionResult:
+class ConditionResult(Presented):
     """Both controllers, neither tuned anew, under another condition.
 
     Attributes:
@@ -78,7 +79,7 @@ def depends_on_temperature(drive: Drive) -> bool:
 
 
 @dataclass(frozen=True)
-class OverCompensation:
+class OverCompensation(Presented):
     """Cascade and controller on a drive that has less of an effect than the model.
 
     Attributes:

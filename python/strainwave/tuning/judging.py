@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning import goals
@@ -28,7 +29,7 @@ STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a sti
 
 
 @dataclass(frozen=True)
-class Judged:
+class Judged(Presented):
     """A controller, and its figures on drawn gears.
 
     Attributes:
@@ -59,6 +60,9 @@ class Judged:
     def _or_infinite(self, name: str) -> Array:
         values = self.figures[name]
         return np.where(np.isnan(values), np.inf, values)
+
+    def _headline(self) -> str:
+        return f"{self.candidate.name}: {self.reason}" if self.reason else self.candidate.name
 
 
 def judged(

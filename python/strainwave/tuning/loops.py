@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Compensation, Drive, arguments, compensation, control
+from strainwave import Compensation, Drive, arguments, compensation, control, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
+from strainwave.presentation import Pictured, Presented, Row
 from strainwave.tuning.cascade import Plant, Setting, observer_of, tuned_law
 from strainwave.tuning.linear_plant import HeldPlant, LinearPlant
 
@@ -32,7 +34,7 @@ MAX_POLE_RADIUS = 1.0 + 1e-7  # of a loop that is stable: a free angle has 1
 
 
 @dataclass(frozen=True, eq=False)
-class Margins(ComparedByFields):
+class Margins(ComparedByFields, Presented):
     """Stability margins of a loop.
 
     Attributes:
@@ -61,9 +63,18 @@ class Margins(ComparedByFields):
     frequency: Array = field(repr=False)
     loop: Complex = field(repr=False)
 
+    def _headline(self) -> str:
+        return f"modulus {self.modulus:.2f}, crossover {typeset.quantity(self.crossover, 'rad/s')}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("crossover", self.crossover, "rad/s")
+        yield Row("gain margin", self.gain, "1", note="factor")
+        yield Row("phase margin", float(np.degrees(self.phase)), "deg")
+        yield Row("modulus margin", self.modulus, "1")
+
 
 @dataclass(frozen=True)
-class LoopMargins:
+class LoopMargins(Pictured):
     """Margins of both loops of a cascade.
 
     Attributes:
@@ -98,6 +109,13 @@ class LoopMargins:
         from strainwave.tuning.loops_plot import margins_figure
 
         return margins_figure({"speed loop": self.speed, "position loop": self.position})
+
+    def _headline(self) -> str:
+        return f"speed loop {self.speed._headline()}; position loop {self.position._headline()}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name, loop in (("speed", self.speed), ("position", self.position)):
+            yield from (row._replace(name=f"{row.name} of the {name} loop") for row in loop._rows())
 
 
 def loop_margins(drive: Drive) -> LoopMargins:

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.presentation import Presented
+
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class ExportLoss:
+class ExportLoss(Presented):
     """Difference between the numbers that another program takes and the full model of the gear.
 
     Attributes:

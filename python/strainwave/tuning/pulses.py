@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, arguments
+from strainwave import Drive, Gear, arguments, typeset
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import shortened
+from strainwave.presentation import Pictured, Row, counted, rows_of_fields
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario, constant
 from strainwave.simulation.state import State
@@ -18,6 +20,9 @@ from strainwave.tuning.approach import friction_at_rest, lost_motion
 from strainwave.tuning.cascade import Plant, line_of_friction
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import UPPER_QUANTILE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -51,7 +56,7 @@ def pulse_travel(torque: float, width: float, inertia: float, friction: float) -
         ValueError: a number is out of its range
 
     Source:
-        document P, "pulse" command of the experiments; own derivation
+        the position control article, "pulse" command of the experiments; own derivation
 
     >>> round(pulse_travel(torque=0.15, width=0.02, inertia=1.2e-3, friction=0.072), 6)
     0.027083
@@ -92,7 +97,7 @@ def _travel_per_square(torque: float, inertia: float, friction: float) -> float:
 
 
 @dataclass(frozen=True)
-class PulsePlan:
+class PulsePlan(Pictured):
     """A train of equal pulses for a drive that sticks.
 
     Attributes:
@@ -151,6 +156,21 @@ class PulsePlan:
         level = np.resize([sense * self.actuation_per_torque * self.torque, 0.0], edges.size)
         return Scenario(float(ends[-1]), edges, level, np.zeros(edges.size))
 
+    def _headline(self) -> str:
+        travel, torque = typeset.quantity(self.travel, "rad"), typeset.quantity(self.torque, "N.m")
+        return f"{counted(len(self.widths), 'pulse')} of {torque} for {travel} of {self.gear_set.name}"
+
+    def _rows(self) -> Iterator[Row]:
+        return (row for row in rows_of_fields(self) if row.name not in ("gear set", "drive"))
+
+    def plot(self) -> Figure:
+        """Return a figure of the train of pulses over time."""
+        return self.command.plot("command of the motor", "A" if "A/" in self._unit else "N.m")
+
+    @property
+    def _unit(self) -> str:
+        return "A/(N.m)" if self.actuation_per_torque != 1.0 else "1"
+
 
 def plan_pulses(
     drive: GearSet | Drive | str,
@@ -181,7 +201,7 @@ def plan_pulses(
             nor a voltage, or its friction does not hold it at rest
 
     Source:
-        document P, experiments (pulse control); own derivation
+        the position control article, experiments (pulse control); own derivation
 
     >>> plan = plan_pulses("position-drive", 0.002)
     >>> len(plan.widths), round(1e3 * plan.widths[0])  # ms
@@ -217,7 +237,7 @@ def _breakaway(gear: Gear) -> float:
 
 
 @dataclass(frozen=True)
-class PulsedMove:
+class PulsedMove(Pictured):
     """A move by pulses.
 
     Attributes:
@@ -253,6 +273,24 @@ class PulsedMove:
     def reached(self) -> bool:
         """True if the error is within the tolerance."""
         return abs(self.error) <= self.tolerance
+
+    def _headline(self) -> str:
+        verdict = "reached" if self.reached else "NOT reached"
+        return f"{counted(self.pulses, 'pulse')}, {verdict}, error {typeset.quantity(self.error, 'rad')}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("travel asked for", self.travel, "rad")
+        yield Row("error", self.error, "rad", note=f"tolerance {typeset.quantity(self.tolerance, 'rad')}")
+        for number, (width, angle) in enumerate(zip(self.widths.tolist(), self.angles[1:].tolist(), strict=True), start=1):
+            yield Row(f"angle after pulse {number}", angle, "rad", note=f"width {typeset.quantity(width, 's')}")
+
+    def plot(self) -> Figure:
+        """Return a figure of the angle at rest after each pulse, with the travel asked for."""
+        from strainwave.drawing.simple import Series, points_figure
+
+        pulse = np.arange(float(len(self.angles)))
+        angle = Series("angle of the output", "rad", self.angles)
+        return points_figure("Positioning by pulses", Series("pulse", "1", pulse), angle, {"travel asked for": self.travel})
 
 
 def position_by_pulses(
@@ -294,7 +332,7 @@ def position_by_pulses(
         ValueError: a number is out of its range, or the drive does not come to rest after a pulse
 
     Source:
-        document P, experiments (pulse control); the correction: own derivation
+        the position control article, experiments (pulse control); the correction: own derivation
 
     >>> move = position_by_pulses(plan_pulses("position-drive", 0.005), tolerance=1e-4)
     >>> move.reached, move.pulses < 6
@@ -362,7 +400,7 @@ class _Resting:
 
 
 @dataclass(frozen=True)
-class PulseRepeatability:
+class PulseRepeatability(Pictured):
     """Moves by pulses of drives with drawn friction.
 
     Attributes:
@@ -399,6 +437,21 @@ class PulseRepeatability:
     def upper_pulses(self) -> float:
         """Number of pulses that is enough for 95 % of the drives."""
         return float(np.quantile(self.pulses, UPPER_QUANTILE, method="higher"))
+
+    def _headline(self) -> str:
+        share = typeset.number(100.0 * self.reached, 3)
+        return f"{share} % of {len(self.errors)} drives within the tolerance, median {self.median_pulses:g} pulses"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("share within the tolerance", self.reached, "1")
+        yield Row("median error", self.median_error, "rad", note=f"95 %: {typeset.quantity(self.upper_error, 'rad')}")
+        yield Row("median pulses", self.median_pulses, "1", note=f"95 %: {self.upper_pulses:g}")
+
+    def plot(self) -> Figure:
+        """Return a figure of the histogram of the errors."""
+        from strainwave.drawing.simple import Series, histograms_figure
+
+        return histograms_figure(f"Errors of {len(self.errors)} drives", [Series("error of the output", "rad", self.errors)])
 
 
 def pulse_repeatability(

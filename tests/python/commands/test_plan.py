@@ -21,7 +21,7 @@ def test_the_plan_of_the_command_is_that_of_the_function(tmp_path: Path) -> None
         sw.GearSet.read("csg-25-100"), ["gear.friction_input"], experiments=["friction"], noise={"friction": 2e-3}, time=480.0,
         speed_limit=1000.0 * 3.141592653589793 / 30.0,
     )  # fmt: skip
-    assert said.stdout == plan.summary() + "\n"
+    assert said.stdout == f"{plan}\n"
     assert (said.returncode, said.stderr) == (0, "")
     assert list(tmp_path.iterdir()) == []
 

@@ -197,9 +197,8 @@ def test_loops_of_an_earlier_analysis_are_told(tmp_path: Path) -> None:
 def test_a_virtual_test_says_what_its_steps_of_torque_cost(tmp_path: Path) -> None:
     result = strainwave("rig", "simulate", "--positions", 60, "--step", 0.3, "--out", "test", folder=tmp_path)
     assert "the peak is 0.3432 N.m: 0.36 N.m is no step of the masses" in result.stdout
-    assert (
-        "at 60 degrees document T's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower" in result.stdout
-    )
+    assert "at 60 degrees the torsional stiffness article's loop has its 51.9 degrees from 0.353 N.m on; " in result.stdout
+    assert "at 0.343 N.m it is narrower" in result.stdout
 
 
 @pytest.mark.slow("commands")

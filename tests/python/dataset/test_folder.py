@@ -284,7 +284,7 @@ def test_dask_makes_an_equal_data_set_though_workers_are_killed(whole: tuple[Pat
     ) as cluster:
         killed: set[int] = set()
 
-        def kill(line: str) -> None:
+        def kill(line: str, share: float) -> None:
             lines.append(line)
             if len(killed) < 2:
                 alive = [nanny.pid for nanny in cluster.workers.values() if nanny.pid]  # none while a nanny starts another

@@ -13,6 +13,7 @@ from typing import BinaryIO
 
 import hypothesis.extra.numpy as hnp
 import numpy as np
+import pandas
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -491,8 +492,20 @@ def test_a_recording_is_taken_by_dict_and_pandas() -> None:
 
     run = Recording({"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}, {"time": "s", "motor speed": "rad/s"})
     assert {name: values.tolist() for name, values in dict(run).items()} == {"time": [0.0, 0.1], "motor speed": [1.0, 2.0]}
-    frame = run.to_pandas()
+    frame = run.to_frame()
     assert frame.attrs["units"] == run.units
     pandas.testing.assert_frame_equal(pandas.DataFrame(run), frame, check_exact=True)
     assert list(run) == [(0.0, 1.0), (0.1, 2.0)]
     assert len(list(run)) == len(run)
+
+
+def test_a_table_of_pandas_is_a_recording(tmp_path: Path) -> None:
+    columns = {"time": [0.0, 0.1], "torque": [1.0, 2.0]}
+    made = Recording(columns, {"time": "s", "torque": "N.m"})
+    frame = pandas.DataFrame(columns)
+    assert Recording(frame, made.units) == Recording(made.to_frame()) == made
+    assert Recording(frame.rename(columns={"time": "time [s]", "torque": "torque (N.m)"})) == made
+    with pytest.raises(ValueError, match='column "torque" has no unit'):
+        Recording(frame.rename(columns={"time": "time [s]"}))
+    with pytest.raises(TypeError, match="units must be given"):
+        Recording(columns)

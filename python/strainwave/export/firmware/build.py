@@ -24,6 +24,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.files.writing import making, write_all
 from strainwave.native.static_type import SCALARS, Scalar
+from strainwave.presentation import Presented
 
 FLAGS = source.FLAGS
 MAX_FLOAT = float(np.finfo(np.float32).max)
@@ -39,7 +40,7 @@ RESERVED = frozenset(KEYWORDS.split())
 
 
 @dataclass(frozen=True)
-class Firmware:
+class Firmware(Presented):
     """A part of a drive that was written as firmware.
 
     Attributes:

@@ -1,8 +1,8 @@
-"""Document P's procedure: friction over the motor's angle, a parabola over many turns and harmonics of each turn.
+"""Friction over the motor's angle by the position control article: a parabola over many turns, harmonics of each turn.
 
 Friction of sliding at constant speed is f = s1 q^2 + s2 q + s3 + b |v| + sum_k (a_k cos k q + b_k sin k q), k up to 10
-(document P, equations of f_aver, f_peri and f_visc). P prints neither a_k and b_k nor B; a constant a_0 / 2 or B is the same
-as s3 (E-P9).
+(the position control article, equations of f_aver, f_peri and f_visc). It prints neither a_k and b_k nor B; a constant a_0 / 2
+or B is the same as s3 (its erratum 9).
 """
 
 from __future__ import annotations
@@ -24,14 +24,13 @@ from strainwave.statistics.linear_fit import solved
 Array = NDArray[np.float64]
 
 FULL_TURN = 2.0 * np.pi  # rad
-ORDER_COUNT = 10  # harmonics of document P, and of the law
+ORDER_COUNT = 10  # harmonics of the position control article, and of the law
 MIN_SAMPLES_PER_PERIOD = 4  # of the highest order
-CONTRADICTION_SIGMA = 3.0  # standard deviations: two numbers further apart contradict each other
 
 
 @dataclass(frozen=True, eq=False)
 class PositionFit(ComparedByFields):
-    """Friction over the angle, as document P describes it.
+    """Friction over the angle, as the position control article describes it.
 
     Attributes:
         law: fitted friction, valid over the angles measured
@@ -39,7 +38,7 @@ class PositionFit(ComparedByFields):
         residual: measured less fitted friction [N.m], shape (n,)
         angle: of the samples of all runs, one after the other [rad], shape (n,)
         friction: their friction, positive if it opposes the motion [N.m], shape (n,)
-        integrated: the same law by P's integrals over whole turns; None for fewer than three whole turns
+        integrated: the same law by the article's integrals over whole turns; None for fewer than three whole turns
     """
 
     law: PositionDependent
@@ -53,9 +52,9 @@ class PositionFit(ComparedByFields):
 def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     """Fit friction over the angle to runs at constant speed.
 
-    Least squares over all samples, so that turns need not be whole; and P's own way if a run has three whole turns: the means
-    of whole turns give the parabola, the integrals of the rest give a_k and b_k. The mean of a parabola over a turn exceeds its
-    middle by s1 pi^2 / 3, which is taken off.
+    Least squares over all samples, so that turns need not be whole; and the article's own way if a run has three whole turns:
+    the means of whole turns give the parabola, the integrals of the rest give a_k and b_k. The mean of a parabola over a turn
+    exceeds its middle by s1 pi^2 / 3, which is taken off.
 
     Args:
         recordings: runs at constant speed with columns angle and torque of the motor, and speed if there are several speeds;
@@ -133,7 +132,7 @@ def _run(recording: Recording) -> tuple[Array, Array, Array]:
 
 
 def _integrated(angle: Array, level: Array) -> Array | None:
-    """Return P's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k; None for fewer than three turns."""
+    """Return the article's integrals over the whole turns of a run: s1, s2, s3, a_k, b_k; None for fewer than three turns."""
     order = np.argsort(angle, kind="stable")
     angle, level = angle[order], level[order]
     first, turns = float(angle[0]), int((angle[-1] - angle[0]) // FULL_TURN)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, arguments
+from strainwave import Drive, Gear, arguments, typeset
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
 from strainwave.identification.excitation.candidates import CandidateMeasurement, Limits, Noise, Resolution
@@ -19,9 +19,13 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every, parameters as chosen
+from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
 from strainwave.statistics.determined_sum import DeterminedSum, sum_by_information
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 EXPERIMENTS = ("friction", "torsion", "motion")
@@ -38,7 +42,7 @@ Known = GearSet | Fit | Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class PlannedMeasurement:
+class PlannedMeasurement(Presented):
     """One measurement of a plan.
 
     Attributes:
@@ -59,7 +63,7 @@ class PlannedMeasurement:
 
 
 @dataclass(frozen=True)
-class Expectation:
+class Expectation(Presented):
     """Uncertainty of a parameter before and after a plan.
 
     Attributes:
@@ -79,7 +83,7 @@ class Expectation:
 
 
 @dataclass(frozen=True)
-class ExperimentPlan:
+class ExperimentPlan(Pictured):
     """Measurements to make, and the uncertainty of each parameter after them.
 
     Attributes:
@@ -109,24 +113,38 @@ class ExperimentPlan:
                 return each
         raise KeyError(f"{path} is none of {listed(each.path for each in self.expectations)}")
 
-    def summary(self) -> str:
-        """Return the plan in words and numbers, to print."""
-        head = (
-            f"measure for {self.duration / 60.0:.3g} min:"
-            if self.steps
-            else "no measurement within the limits adds information"
-        )
-        lines = [head]
-        for step in self.steps:
-            lines.append(f"  {step.repeats} x {step.words}")
-            lines += [f"      determines by itself {listed(map(str, step.determines))}"] if step.determines else []
-        lines.append(f"{'parameter':40} {'value':>12} {'sigma before':>13} {'and after':>12}  unit")
+    def _headline(self) -> str:
+        if not self.steps:
+            return "no measurement within the limits adds information"
+        return f"{counted(len(self.steps), 'measurement')}, {self.duration / 60.0:.3g} min"
+
+    def _rows(self) -> Iterator[Row]:
+        for number, step in enumerate(self.steps, start=1):
+            alone = f"; determines by itself {listed(map(str, step.determines))}" if step.determines else ""
+            yield Row(f"measurement {number}", f"{step.repeats} x {step.words}{alone}")
         for each in self.expectations:
-            before = "not known" if np.isinf(each.before) else f"{each.before:.3g}"
-            after = "not known" if np.isinf(each.after) else f"{each.after:.3g}"
-            lines.append(f"{each.path:40} {each.value:12.5g} {before:>13} {after:>12}  {each.unit}")
-        lines += [f"{each.path}: {each.why}" for each in self.expectations if each.why]
-        return "\n".join([*lines, *self.notes])
+            before = "not known" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
+            yield Row(each.path, each.value, each.unit, each.after, f"before {before}")
+
+    def _remarks(self) -> Iterator[str]:
+        yield from (f"{each.path}: {each.why}" for each in self.expectations if each.why)
+        yield from self.notes
+
+    def plot(self) -> Figure:
+        """Return a figure of the relative standard deviation of each parameter, before and after the measurements.
+
+        Raises:
+            ValueError: no parameter has a finite one after them
+        """
+        from strainwave.drawing.simple import bars_figure
+
+        known = [each for each in self.expectations if np.isfinite(each.after) and each.value]
+        if not known:
+            raise ValueError("the plan determines no parameter, so there is nothing to draw")
+        before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in known]
+        after = [100.0 * each.after / abs(each.value) for each in known]
+        names = [each.path for each in known]
+        return bars_figure("Standard deviation over the value", names, {"before": before, "after": after}, "%")
 
 
 def plan_experiments(

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.spectrum import bandwidth, mean_power
 
 Array = NDArray[np.float64]
 
 REST_SIGMA = 3.0  # standard deviations; positions that differ by less are equal
 MAX_NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
+MAX_NOISE_OF_OWN = 5e-3  # of the part of it that the angle does not make up: by as much inertia and gravity come out too small
 MAX_CUTOFF_SHARE = 0.1  # of the sample rate
 PASS_BAND_SHARE = 0.4  # of the cut-off: 2/5, the literature's rule
 SPEED_CUTOFF_FACTOR = 4.0  # over the cut-off of the acceleration: reversals must be known to milliseconds
@@ -170,7 +172,7 @@ def motion_of(
         time: [s], shape (n,), rising
         angle: [rad], shape (n,)
         cutoff: of the filter on the angle [Hz]; by default the highest at which the noise of the angle is a negligible share of
-            the acceleration, and at most `highest`
+            the acceleration, and of the part of it that no gravity makes up; at most `highest`
         highest: cut-off over the sampling rate, by default
         slid: angle over which friction turns over at a reversal [rad]: samples nearer to one are not compared
 
@@ -189,6 +191,10 @@ def motion_of(
     frequency, power, of_noise, noise = spectra(regular, step)
     if cutoff is None:
         cutoff = widest_cutoff(frequency, power, of_noise, 1.0 / step, highest)
+        of_own = MAX_NOISE_OF_OWN * _own_share(_low_passed(regular, cutoff, step), step)
+        if of_own < MAX_NOISE_SHARE:  # in the full band, in which noise up to the cut-off counts
+            wide = widest_cutoff(frequency, power, of_noise, 1.0 / step, highest / PASS_BAND_SHARE, of_own)
+            cutoff = min(cutoff, PASS_BAND_SHARE * wide)
     every = _every(cutoff, step)
     smooth = _low_passed(regular, cutoff, step)
     quick = _low_passed(regular, min(SPEED_CUTOFF_FACTOR * cutoff, 0.4 / step), step)
@@ -198,6 +204,14 @@ def motion_of(
     known[: END_SAMPLES * every] = known[-END_SAMPLES * every :] = False
     turning = _turning(regular, speed, slid) | near_rest(regular, every, noise)
     return Motion(grid, smooth, speed, acceleration, known, turning, stands, every, cutoff)
+
+
+def _own_share(angle: Array, step: float) -> float:
+    """Return the part of the power of an acceleration that no cubic of its angle makes up, as gravity nearly is [1]."""
+    acceleration, inner = _second_rate(angle, step), slice(2, -2)
+    columns = np.vander((angle - angle.mean()) / max(float(np.ptp(angle)), 1e-300), 4)[inner]
+    own = acceleration[inner] - columns @ solved(columns, acceleration[inner])
+    return float(own @ own) / max(float(acceleration @ acceleration), 1e-300)
 
 
 def _low_passed(series: Array, cutoff: float, step: float) -> Array:
@@ -279,11 +293,18 @@ def spectra(position: Array, step: float) -> tuple[Array, Array, Array, float]:
     return frequency, gain * speed, gain**2 * density, float(np.sqrt(density / (2 * step)))
 
 
-def widest_cutoff(frequency: Array, acceleration: Array, noise: Array, rate: float, share: float = MAX_CUTOFF_SHARE) -> float:
+def widest_cutoff(
+    frequency: Array,
+    acceleration: Array,
+    noise: Array,
+    rate: float,
+    share: float = MAX_CUTOFF_SHARE,
+    max_noise: float = MAX_NOISE_SHARE,
+) -> float:
     """Return the highest cut-off at which noise is a negligible share of the acceleration [Hz], at most a share of the rate."""
     highest = share * rate
     within = frequency <= PASS_BAND_SHARE * highest
-    clean = np.cumsum(noise[within]) <= MAX_NOISE_SHARE * np.cumsum(acceleration[within])
+    clean = np.cumsum(noise[within]) <= max_noise * np.cumsum(acceleration[within])
     if clean[-1]:
         return highest
     edge = float(frequency[within][clean][-1]) if clean.any() else 0.0

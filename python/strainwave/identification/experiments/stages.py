@@ -11,8 +11,9 @@ from strainwave._core import Gear
 def series_compliance(gear: Gear) -> float:
     """Return the compliance at the output in series with the spring, the input shaft held [rad/(N.m)]; 0 without stages.
 
-    Document A's statics, corrected (its eq. (1) at rest, with errata E-A1 and E-A2): radial displacements times
-    tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear one torque,
+    The flight actuator paper's statics, corrected (its eq. (1) at rest, with errata 1 and 2 of the flight actuator paper):
+    radial displacements times tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear
+    one torque,
 
         tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG).
 

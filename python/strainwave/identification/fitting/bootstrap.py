@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
+from strainwave.presentation import DIGITS, Pictured, Row
+from strainwave.progress import Progress, by_count
 from strainwave.statistics.residuals import correlation_length
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 LENGTHS_PER_BLOCK = 4.0  # correlation lengths (assumed; bias of the variance falls with it, its scatter grows)
@@ -22,7 +28,7 @@ MIN_DRAWS = 20  # that determine an interval
 
 
 @dataclass(frozen=True, eq=False)
-class Bootstrap(ComparedByFields):
+class Bootstrap(ComparedByFields, Pictured):
     """Estimates of many resampled measurements.
 
     Attributes:
@@ -59,10 +65,24 @@ class Bootstrap(ComparedByFields):
         ends = np.quantile(self.values[:, self.paths.index(path)], [0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence])
         return float(ends[0]), float(ends[1])
 
+    def _headline(self) -> str:
+        failed = f", {self.failed} without a fit" if self.failed else ""
+        return f"{len(self.values)} draws of {listed(self.paths)}{failed}"
 
-def bootstrap(
-    found: Fit, draws: int = 200, *, seed: int = 0, progress: Callable[[int, int], None] = lambda done, draws: None
-) -> Bootstrap:
+    def _rows(self) -> Iterator[Row]:
+        for path, unit, values, sigma in zip(self.paths, self.units, self.values.T, self.sigma.tolist(), strict=True):
+            low, high = (typeset.number(end, DIGITS) for end in self.interval(path))
+            yield Row(path, float(values.mean()), unit, sigma, f"95 %: {low} to {high}")
+
+    def plot(self) -> Figure:
+        """Return a figure of the histogram of the draws of each estimate."""
+        from strainwave.drawing.simple import Series, histograms_figure
+
+        drawn = [Series(*each) for each in zip(self.paths, self.units, self.values.T, strict=True)]
+        return histograms_figure(f"Estimates of {len(self.values)} draws", drawn)
+
+
+def bootstrap(found: Fit, draws: int = 200, *, seed: int = 0, progress: Progress = None) -> Bootstrap:
     """Return fits to resampled measurements: the prediction of the model, and blocks of its residuals in another order.
 
     Blocks are several correlation lengths long, and channels of a record keep their instants, so that noise correlates as
@@ -73,7 +93,7 @@ def bootstrap(
         found: result of `fit`
         draws: count of fits, 20 or more; each starts where `found` ended
         seed: of the random numbers
-        progress: is called with the count of draws done, and of all
+        progress: as of `sw.simulate`
 
     Returns:
         The estimates of each draw that could be fitted, shape (draws, p), in the order and units of `found.estimates`.
@@ -107,14 +127,16 @@ def bootstrap(
     ]
     predicted = [each for each, _ in problem.predict(best)]
     values = []
-    for draw in range(draws):
-        for record, model, each, length in zip(problem.records, predicted, left, lengths, strict=True):
-            record.measured = model.copy()
-            record.measured[:, record.training] += grown * _resampled(each, length, random)
-        problem.draw_priors(random)
-        with suppress(ValueError, FloatingPointError):
-            values.append(problem.solve(best, weights, REFIT_TOLERANCE))
-        progress(draw + 1, draws)
+    with by_count(progress, "drawing measurements anew", draws) as done:
+        for draw in range(1, draws + 1):
+            for record, model, each, length in zip(problem.records, predicted, left, lengths, strict=True):
+                record.measured = model.copy()
+                record.measured[:, record.training] += grown * _resampled(each, length, random)
+            problem.draw_priors(random)
+            with suppress(ValueError, FloatingPointError):
+                values.append(problem.solve(best, weights, REFIT_TOLERANCE))
+            if done is not None:
+                done(draw)
     if not values:
         raise FloatingPointError(
             "no resampled measurement could be fitted: the model diverges near its estimates; bound the parameters, or fix some"

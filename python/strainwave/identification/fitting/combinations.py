@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import Fit, solved_problem
+from strainwave.presentation import Statement
 from strainwave.statistics.determined_sum import sum_in_words
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ MIN_SINGULAR = 1e-9  # of the largest singular value; directions with a smaller 
 
 
 @dataclass(frozen=True, eq=False)
-class Combination(ComparedByFields):
+class Combination(ComparedByFields, Statement):
     """Parameters that the data do not determine one by one.
 
     Attributes:
@@ -53,7 +54,7 @@ class Combination(ComparedByFields):
     sigma: float = np.nan
     unit: str = ""
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         if len(self.paths) == 1:
             known = f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else ""
             return f"{self.paths[0]} is not determined{known}"

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.statistics.student import ONE_SIGMA, student
 
 
 @dataclass(frozen=True, eq=False)
-class Estimate(ComparedByFields):
+class Estimate(ComparedByFields, Presented):
     """Estimate of one parameter.
 
     Attributes:
@@ -54,3 +55,7 @@ class Estimate(ComparedByFields):
         confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
         reach = self.sigma * student(confidence, self.freedom) / student(ONE_SIGMA, self.freedom)
         return self.value - reach, self.value + reach
+
+    def _headline(self) -> str:
+        limit = ", at its limit" if self.at_limit else ""
+        return f"{self.path} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}{limit}"

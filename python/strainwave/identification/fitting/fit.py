@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, _core, arguments, typeset
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
@@ -25,6 +25,7 @@ from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
 from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
 from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
+from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.threads import one_thread_of_algebra
 from strainwave.statistics.residuals import correlation_length
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
+HELD_OUT = ", held out"  # behind the name of an error
 ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of the channels
 REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
 MAX_ROUGH_PASSES = 4  # of one step each, after the first
@@ -46,7 +48,7 @@ OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "in
 
 
 @dataclass(frozen=True, eq=False)
-class RecordFit(ComparedByFields):
+class RecordFit(ComparedByFields, Presented):
     """Result of a fit for one record.
 
     Attributes:
@@ -75,7 +77,7 @@ class RecordFit(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class Fit(ComparedByFields):
+class Fit(ComparedByFields, Pictured):
     """A model fitted to one record or several.
 
     Attributes:
@@ -94,11 +96,11 @@ class Fit(ComparedByFields):
     >>> torque = 0.02 + 3e-4 * speed + 1e-4 * np.random.default_rng(0).normal(size=60)
     >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.01, breakaway=0.01))
-    >>> print(sw.fit(gear, table, ["friction_input.coulomb", "friction_input.viscous"]).summary())
-    parameter                                           start          value      sigma  unit
-    friction_input.coulomb                               0.01     0.01997928    2.7e-05  N.m
-    friction_input.viscous                                  0   0.0003011159    9.9e-07  N.m.s/rad
-    residual of torque: 8.83e-05 N.m rms
+    >>> print(sw.fit(gear, table, ["friction_input.coulomb", "friction_input.viscous"]))
+    Fit: 2 parameters, rms 88.3 µN·m
+      friction_input.coulomb     0.019979 ± 0.000027  N·m        start 0.01
+      friction_input.viscous  (301.12 ± 0.99) × 10⁻⁶  N·m·s/rad  start 0
+      rms of torque                    88.299 × 10⁻⁶  N·m
     """
 
     model: Any
@@ -232,21 +234,35 @@ class Fit(ComparedByFields):
         part = part_named(self, record)
         return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
 
-    def summary(self) -> str:
-        """Return a table of the estimates, the residuals and the doubts, to print."""
-        lines = [f"{'parameter':44} {'start':>12} {'value':>14} {'sigma':>10}  unit"]
-        for e in self.estimates:
-            note = "  at its limit" if e.at_limit else "" if np.isfinite(e.sigma) else "  not determined by the data"
-            lines.append(f"{e.path:44} {e.start:12.5g} {e.value:14.7g} {e.sigma:10.2g}  {e.unit}{note}")
+    def _headline(self) -> str:
+        left = list(self._left())
+        held_out = [row for row in left if row.name.endswith(HELD_OUT)]
+        error = ", ".join(typeset.quantity(row.value, row.unit) for row in held_out or left if isinstance(row.value, float))
+        where = HELD_OUT if held_out else ""
+        open_ones = sum(not np.isfinite(each.sigma) for each in self.estimates)
+        verdict = f", {open_ones} not determined" if open_ones else ""
+        doubts = f", {counted(len(self.doubts), 'doubt')}" if self.doubts else ""
+        return f"{counted(len(self.estimates), 'parameter')}{verdict}, rms {error}{where}{doubts}"
+
+    def _rows(self) -> Iterator[Row]:
+        for each in self.estimates:
+            state = ", at its limit" if each.at_limit else "" if np.isfinite(each.sigma) else ", not determined by the data"
+            yield Row(each.path, each.value, each.unit, each.sigma, f"start {typeset.number(each.start, 3)}{state}")
+        yield from self._left()
+
+    def _left(self) -> Iterator[Row]:
+        """Yield the residual of each channel of each record, root mean square, fitted and held out."""
         for part in self.parts:
             of = f"{OF_RECORD}{part.name}" if len(self.parts) > 1 else ""
-            for name, unit, trained, held in zip(
-                part.experiment.channels, part.experiment.units, part.rms(), part.rms(held_out=True), strict=True
-            ):
-                held_out = "" if np.isnan(held) else f", on data held out {held:.4g} {unit}"
-                lines.append(f"residual of {name}{of}: {trained:.4g} {unit} rms{held_out}")
-        lines += [f"doubt: {doubt}" for doubt in self.doubts]
-        return "\n".join(lines)
+            for held_out, where in ((False, ""), (True, HELD_OUT)):
+                for name, unit, rms in zip(
+                    part.experiment.channels, part.experiment.units, part.rms(held_out=held_out).tolist(), strict=True
+                ):
+                    if np.isfinite(rms):
+                        yield Row(f"rms of {name}{of}{where}", rms, unit)
+
+    def _remarks(self) -> Iterator[str]:
+        return iter(self.doubts)
 
 
 def _channels_of(part: RecordFit, named: bool) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,10 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, solved_from, solved_problem
 from strainwave.messages import listed
+from strainwave.presentation import Pictured, Presented, Row
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 MAX_START_FACTOR = 2.0  # between the end of a fit and the initial value of another one
@@ -25,7 +30,7 @@ MIN_RELATIVE_DISTANCE = 1e-3  # of a parameter: fits without noise end as near a
 
 
 @dataclass(frozen=True, eq=False)
-class End(ComparedByFields):
+class End(ComparedByFields, Presented):
     """A minimum at which fits with different initial values ended.
 
     Attributes:
@@ -40,7 +45,7 @@ class End(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class Minima(ComparedByFields):
+class Minima(ComparedByFields, Pictured):
     """Minima of a fit.
 
     Attributes:
@@ -70,20 +75,33 @@ class Minima(ComparedByFields):
         """Other ends than the best that explain the measurement about as well."""
         return tuple(end for end in self.ends[1:] if end.cost < MAX_RIVAL_COST)
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         count = sum(end.starts for end in self.ends)
-        first, *_ = self.ends
-        lines = [f"{first.starts} of {count} starts ended at {self._words(first)}"]
+        return f"{self.ends[0].starts} of {count} starts ended at {self._words(self.ends[0])}"
+
+    def _rows(self) -> Iterator[Row]:
+        for number, end in enumerate(self.ends, start=1):
+            yield Row(f"cost of minimum {number}", end.cost, "1", note=f"above the least, {end.starts} starts")
+            yield from (Row(f"{path} at minimum {number}", value, self.units[path]) for path, value in end.values.items())
+
+    def _remarks(self) -> Iterator[str]:
         if self.lower:
-            lines.append("this is lower than where the fit ended: it had ended at a minimum that explains less; use `best`")
-        lines += [
-            f"{end.starts} ended at {self._words(end)}, which explains the measurement about as well: the data do not separate "
-            "the two, and no standard deviation counts it. Bound the parameters, or measure what separates them"
-            for end in self.rivals
-        ]
-        if first.starts == 1 and count > 1:
-            lines.append("no other start ended there: a lower minimum may be left; give more starts, or start nearer")
-        return "\n".join(lines)
+            yield "this is lower than where the fit ended: it had ended at a minimum that explains less; use `best`"
+        for end in self.rivals:
+            yield (
+                f"{end.starts} ended at {self._words(end)}, which explains the measurement about as well: the data do not "
+                "separate the two, and no standard deviation counts it. Bound the parameters, or measure what separates them"
+            )
+        if self.ends[0].starts == 1 and sum(end.starts for end in self.ends) > 1:
+            yield "no other start ended there: a lower minimum may be left; give more starts, or start nearer"
+
+    def plot(self) -> Figure:
+        """Return a figure of the cost of each minimum over the number of the minimum, the least first."""
+        from strainwave.drawing.simple import Series, points_figure
+
+        place = np.arange(1.0, len(self.ends) + 1.0)
+        cost = np.array([end.cost for end in self.ends])
+        return points_figure("Minima of the fit", Series("minimum", "1", place), Series("cost above the least", "1", cost))
 
     def _words(self, end: End) -> str:
         return listed([f"{path} = {value:.5g} {self.units[path]}" for path, value in end.values.items()])
@@ -115,7 +133,12 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
     >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     >>> found = sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb", "friction_input.viscous"])
     >>> print(minima(found, 3))
-    4 of 4 starts ended at friction_input.coulomb = 0.019979 N.m, friction_input.viscous = 0.00030112 N.m.s/rad
+    Minima: 4 of 4 starts ended at friction_input.coulomb = 0.019979 N.m,
+      friction_input.viscous = 0.00030112 N.m.s/rad
+      cost of minimum 1                             0
+          above the least, 4 starts
+      friction_input.coulomb at minimum 1    0.019979  N·m
+      friction_input.viscous at minimum 1  0.00030112  N·m·s/rad
     """
     starts, random = arguments.whole("starts", starts, 1, MAX_STARTS), np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, given = solved_problem(found)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,11 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
+from strainwave.presentation import Pictured, Row
 from strainwave.statistics.student import ONE_SIGMA, student
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 MAX_TRIALS = 24  # values tried to each side
@@ -21,7 +26,7 @@ MAX_RELATIVE_DISTANCE = 1e3  # from the estimate, over the size of the parameter
 
 
 @dataclass(frozen=True, eq=False)
-class Profile(ComparedByFields):
+class Profile(ComparedByFields, Pictured):
     """Profile likelihood of one parameter.
 
     Attributes:
@@ -37,7 +42,12 @@ class Profile(ComparedByFields):
 
     >>> cost = np.array([4.0, 0.0, 1.0])
     >>> print(Profile("gear.damping", "N.m.s/rad", np.array([1.0, 2.0, 9.0]), cost, 4.0, (1.0, np.inf), False, True))
-    gear.damping is above 1 N.m.s/rad; the data do not determine how large it is
+    Profile: gear.damping is above 1 N.m.s/rad; the data do not determine how large
+      it is
+      gear.damping           2  N·m·s/rad  of least cost
+      interval          1 to ∞  N·m·s/rad
+      cost at its ends       4
+      values tried      1 to 9  N·m·s/rad
     """
 
     path: str
@@ -49,7 +59,7 @@ class Profile(ComparedByFields):
     open_below: bool
     open_above: bool
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         low, high = self.interval
         if self.open_below and self.open_above:
             return f"{self.path} is not determined: the data bound it to neither side"
@@ -58,6 +68,22 @@ class Profile(ComparedByFields):
         if self.open_below:
             return f"{self.path} is below {high:.4g} {self.unit}; the data do not determine how small it is"
         return f"{self.path} lies between {low:.4g} and {high:.4g} {self.unit}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row(self.path, float(self.values[self.cost.argmin()]), self.unit, note="of least cost")
+        yield Row("interval", self.interval, self.unit)
+        yield Row("cost at its ends", self.limit, "1")
+        yield Row("values tried", (float(self.values.min()), float(self.values.max())), self.unit)
+
+    def plot(self) -> Figure:
+        """Return a figure of the cost over the parameter, with the cost at the ends of the interval."""
+        from strainwave.drawing.simple import Series, points_figure
+
+        title = f"Profile likelihood of {self.path}"
+        limit = {"ends of the interval": self.limit}
+        return points_figure(
+            title, Series(self.path, self.unit, self.values), Series("cost above the least", "1", self.cost), limit
+        )
 
 
 def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
@@ -89,7 +115,11 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
     >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     >>> found = sw.fit(sw.Gear(friction_input=law), table, ["friction_input.coulomb", "friction_input.viscous"])
     >>> print(profile(found, "friction_input.coulomb"))
-    friction_input.coulomb lies between 0.01992 and 0.02003 N.m
+    Profile: friction_input.coulomb lies between 0.01992 and 0.02003 N.m
+      friction_input.coulomb              0.019979  N·m  of least cost
+      interval                0.019925 to 0.020034  N·m
+      cost at its ends                      4.0198
+      values tried            0.019924 to 0.020035  N·m
     """
     path, confidence = arguments.text("path", path), arguments.number("confidence", confidence, low=0.0, high=1.0)
     problem, best = solved_problem(found)

@@ -14,7 +14,7 @@ from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.position import FULL_TURN, PositionFit, fit_position
 from strainwave.identification.checks.sizes import opposes_motion
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
@@ -292,7 +292,7 @@ def _gravity(levels: Levels) -> Iterator[FileEstimate]:
 
 
 def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
-    """Return friction over the angle of the input, as document P describes it; nothing if no run turns once or more."""
+    """Return friction over the angle of the input, as the position control article has it; nothing if no run turns once."""
     turning = [run for run in runs if run.turning is not None]
     if not turning:
         return (), known
@@ -300,8 +300,8 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     found = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
-    left = rms(found.residual) / rms(found.friction)
-    whole = share_left({"friction over the angle": (left, MAX_SHARE_OF_TORQUE)}, listed(names))
+    left = Left(rms(found.residual), rms(found.friction), "N.m", MAX_SHARE_OF_TORQUE)
+    whole = error_left({"friction over the angle": left}, listed(names))
     estimates = only_if_explained(_estimates(found, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
     remarks = list(_of_position(found, len(turning)))
@@ -357,7 +357,7 @@ def _of_position(found: PositionFit, count: int) -> Iterator[str]:
             for name in ("cosine", "sine")
             for one, other in zip(getattr(found.law, name), getattr(found.integrated, name), strict=True)
         )
-        yield f"document P's integrals over whole turns give waves that differ by {off:.1g} N·m at most"
+        yield f"the position control article's integrals over whole turns give waves that differ by {off:.1g} N·m at most"
 
 
 def _waves(found: PositionFit) -> dict[int, tuple[float, float, float]]:

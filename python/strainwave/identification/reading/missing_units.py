@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -25,6 +25,7 @@ EPOCHS = ((1e18, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time
 RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
 MIN_BITS, MAX_BITS = 6, 40  # of an encoder
 MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
+MAX_OFF_EXACT_SPEED = 0.02  # relative difference of a speed from the slope of its angle, in the right units
 MAX_OFF_STEP = 1e-3  # relative difference of a step from a part of a revolution
 MIN_SHARE_OF_MULTIPLES = 0.95  # of the steps of an encoder
 MAX_JOINT_ANGLE = 4.0 * np.pi  # rad: two turns to each side, the most that joints have
@@ -65,7 +66,7 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
         if time is None or None not in known:
             continue
         slope = abs(speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s")))
-        for column, other, own, unit in zip(pair, pair[::-1], known, next(_fitting(slope, *known), ()), strict=False):
+        for column, other, own, unit in zip(pair, pair[::-1], known, next(iter(_fitting(slope, *known)), ()), strict=False):
             is_usual = column is pair[0] and known[1] is None and unit == UNITS["angle"]
             if own is None:
                 found[column.position] = Assumed(unit, "as is usual" if is_usual else f"as it fits {other.name}")
@@ -148,7 +149,7 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
     for angle, speed in pairs_of_shafts(columns):
         slope, then = abs(speed_per_slope(angle.raw, speed.raw, column.raw)), f"{speed.name} is then the slope of {angle.name}"
         for unit in ("ms", "us", "ns"):
-            if any(_fitting(slope * convert(1.0, unit, "s"), angle.unit, speed.unit)):
+            if _fitting(slope * convert(1.0, unit, "s"), angle.unit, speed.unit):
                 return Assumed(unit, f"as {then}")
         expected = convert(1.0, f"{angle.unit or UNITS['angle']}/s", speed.unit or UNITS["speed"])
         for rate in RATES if counts_rows else ():
@@ -161,7 +162,7 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
     ]
     raise QuestionError(
         f"column {quoted(column.name)} has no unit, and its steps do not determine it",
-        [*ways, replace(LOG_AT_RATE, label="it counts rows")],
+        [*ways, *[replace(LOG_AT_RATE, label="it counts rows")] * counts_rows],
     )
 
 
@@ -200,9 +201,15 @@ def pairs_of_shafts(columns: Sequence[Column]) -> list[tuple[Column, Column]]:
     return [(angle, speed) for angle in angles for speed in speeds if angle.channel.side == speed.channel.side]
 
 
-def _fitting(slope: float, angle: str | None, speed: str | None) -> Iterator[tuple[str, str]]:
-    """Yield units of an angle and its speed in which the speed is the slope; None is open; those in radians come first."""
-    for one in ANGLES if angle is None else (angle,):
-        for other in (speed,) if speed is not None else SPEEDS if one != "rev" else ("rev/s", *SPEEDS):
-            if abs(slope / convert(1.0, f"{one}/s", other) - 1.0) < MAX_OFF_SPEED:
-                yield one, other
+def _fitting(slope: float, angle: str | None, speed: str | None) -> list[tuple[str, str]]:
+    """Return units of an angle and its speed in which the speed is the slope; None is open.
+
+    Those in which it is nearly exactly come first, as rpm are 1.05 times °/s beside rev and rad; of these radians.
+    """
+    pairs = [
+        (one, other)
+        for one in (ANGLES if angle is None else (angle,))
+        for other in ((speed,) if speed is not None else SPEEDS if one != "rev" else ("rev/s", *SPEEDS))
+    ]
+    off = {pair: abs(slope / convert(1.0, f"{pair[0]}/s", pair[1]) - 1.0) for pair in pairs}
+    return sorted((pair for pair in pairs if off[pair] < MAX_OFF_SPEED), key=lambda pair: off[pair] > MAX_OFF_EXACT_SPEED)

@@ -31,6 +31,7 @@ from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_sl
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
 from strainwave.identification.reading.values import read
 from strainwave.messages import listed, one_line, quoted
+from strainwave.presentation import Presented
 from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
@@ -43,7 +44,7 @@ REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}
 
 
 @dataclass(frozen=True)
-class Recognised:
+class Recognised(Presented):
     """A file of measurements as it is read.
 
     Args:

@@ -129,11 +129,15 @@ def sides_of_angles(angles: Sequence[Column]) -> tuple[Column, Column, str]:
         QuestionError: nothing determines it
     """
     slow, fast = sorted(angles, key=lambda column: float(np.ptp(column.si)))
+    is_alike = bool(np.ptp(fast.si) < MIN_FACTOR_OF_SIDES * np.ptp(slow.si))
     named = [column.channel.side for column in angles]
     if any(named):
         first, second = angles[::-1] if named[0] == "output" or named[1] == "input" else angles
         return first, second, ""
-    if np.ptp(fast.si) < MIN_FACTOR_OF_SIDES * np.ptp(slow.si):
+    if is_alike and angles[0].robot != angles[1].robot:  # theta of the motor, q of the joint
+        motor, joint = sorted(angles, key=lambda column: column.robot)
+        return motor, joint, f"{joint.name} is what robots call an angle of a joint, and {motor.name} runs with it at the motor"
+    if is_alike:
         names = [f"{side}_{fast.channel.quantity}" for side in ("input", "output")]
         ways = [
             Answer(

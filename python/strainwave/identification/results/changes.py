@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive
+from strainwave import Drive, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.parameters import every
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
@@ -32,7 +33,7 @@ PLACES = ("friction_input", "friction_mesh", "friction_output")
 
 
 @dataclass(frozen=True)
-class PartChange:
+class PartChange(Presented):
     """Change of a part of a saved gear or drive by a recording.
 
     Attributes:
@@ -75,6 +76,12 @@ class PartChange:
     def is_small(self) -> bool:
         """True if the difference from the saved gear is below `smallest`."""
         return abs(self.value - self.unchanged) < self.smallest
+
+    def _headline(self) -> str:
+        verdict = "changed" if self.significant else "no significant change"
+        return (
+            f"{self.name} {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, saved {self.unchanged:g}: {verdict}"
+        )
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from strainwave import typeset
+from strainwave.presentation import Presented
+
 
 @dataclass(frozen=True)
-class Check:
+class Check(Presented):
     """A consistency check of a measurement, or of several together.
 
     Attributes:
@@ -28,3 +31,9 @@ class Check:
     failed: bool
     message: str = ""
     remedy: str = ""
+
+    def _headline(self) -> str:
+        return f"{self.name} of {self.source}: {typeset.quantity(self.value, self.unit)}, {self._verdict()}"
+
+    def _verdict(self) -> str:
+        return f"{'FAILED' if self.failed else 'passed'}, limit {typeset.quantity(self.limit, self.unit)}"

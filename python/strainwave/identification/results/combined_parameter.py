@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import typeset
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.messages import listed
+from strainwave.presentation import Presented, Row
 
 Array = NDArray[np.float64]
 MAX_DISTANCE = 3.0  # standard deviations: two files that are further apart contradict each other
@@ -18,7 +20,7 @@ MAX_DISTANCE_IN_MEAN = 2.0  # standard deviations: of files that are no further 
 
 
 @dataclass(frozen=True)
-class CombinedParameter:
+class CombinedParameter(Presented):
     """A parameter of the gear or its drive, from the estimates of all files.
 
     Attributes:
@@ -49,6 +51,16 @@ class CombinedParameter:
     def of_file(self, name: str) -> FileEstimate:
         """Return the estimate of one file."""
         return (self.best or self.estimate) if name == self.source else self.others[name]
+
+    def _headline(self) -> str:
+        taken = self.estimate
+        return f"{taken.label} = {typeset.uncertain_quantity(taken.value, taken.sigma, taken.unit)}, {self.taken_from}"
+
+    def _rows(self) -> Iterator[Row]:
+        for name in (self.source, *self.others):
+            each = self.of_file(name)
+            note = "contradicts" if name in self.contradicts else "in the mean" if name in self.mean_of else ""
+            yield Row(name, each.value, each.unit, each.sigma, note)
 
 
 def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:

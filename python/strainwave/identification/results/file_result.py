@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.fitting.fit import Fit
@@ -15,6 +16,7 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import HeldOut
+from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ def is_uncertain(value: float, sigma: float) -> bool:
 
 
 @dataclass(frozen=True)
-class FileEstimate:
+class FileEstimate(Presented):
     """Estimate of a parameter by one file.
 
     Attributes:
@@ -110,6 +112,9 @@ class FileEstimate:
         """True for an angle that begins anew with each turn, so that its size means nothing."""
         return "phase" in self.path.rpartition(".")[2]
 
+    def _headline(self) -> str:
+        return f"{self.label} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
+
 
 @dataclass(frozen=True, eq=False)
 class Picture(ComparedByFields):
@@ -144,7 +149,7 @@ class Picture(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class FileResult(ComparedByFields):
+class FileResult(ComparedByFields, Pictured):
     """Result of one file.
 
     Attributes:
@@ -228,3 +233,19 @@ class FileResult(ComparedByFields):
     def failed(self) -> tuple[Check, ...]:
         """Checks that failed."""
         return tuple(check for check in self.checks if check.failed)
+
+    def _headline(self) -> str:
+        if self.refused:
+            return f"{self.name}: {self.title}, NOT USED: {self.refused}"
+        failed = f", {counted(len(self.failed), 'check')} FAILED" if self.failed else ""
+        held_out = "" if self.held_out is None else f", {self.held_out._headline()}"
+        return f"{self.name}: {self.title}, {self.model}{held_out}{failed}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("file", self.name)
+        for each in self.estimates:
+            yield Row(each.label, each.value, each.unit, each.sigma, each.why)
+        if self.held_out is not None:
+            yield from self.held_out._rows()
+        for check in self.checks:
+            yield Row(check.name, check.value, check.unit, note=check._verdict())

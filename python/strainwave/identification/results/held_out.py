@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from strainwave import typeset
+from strainwave.presentation import Presented, Row
 from strainwave.typeset import percent, quantity
 
 MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
@@ -31,7 +34,7 @@ def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan
 
 
 @dataclass(frozen=True)
-class HeldOut:
+class HeldOut(Presented):
     """The error of a model over a contiguous stretch that its numbers were not fitted to: every sample, in the full band.
 
     Models were chosen by such stretches, this one among them, so that a new record has a somewhat larger error.
@@ -75,3 +78,14 @@ class HeldOut:
     def max_share_of_plain(self) -> float:
         """Limit of `share_of_plain` [1]."""
         return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
+
+    def _headline(self) -> str:
+        plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
+        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
+        if np.isfinite(self.plain):
+            yield Row("error of plain least squares", self.plain, self.unit)
+        yield Row("error of the mean", self.zero, self.unit)
+        yield Row("samples held out", self.samples)

@@ -7,16 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from strainwave import typeset
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.results.combined_parameter import CombinedParameter
 from strainwave.identification.results.file_result import FileResult, State
 from strainwave.parameters import gear_numbers, plain
+from strainwave.presentation import Presented
 
 UNDETERMINED = "no file determines it"
 
 
 @dataclass(frozen=True)
-class ParameterState:
+class ParameterState(Presented):
     """State of a number of the gear.
 
     Attributes:
@@ -37,6 +39,9 @@ class ParameterState:
     sigma: float
     state: State
     why: str
+
+    def _headline(self) -> str:
+        return f"{self.path} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
 
 
 def states_of(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
@@ -16,6 +18,7 @@ from strainwave.identification.results.check import Check
 from strainwave.identification.results.file_result import Picture
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.orders.lines import SpectrumLine
+from strainwave.presentation import Pictured, Row
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
@@ -29,7 +32,7 @@ Verdict = Literal["agrees", "differs", "contradicts", "refused"]
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction(ComparedByFields):
+class Prediction(ComparedByFields, Pictured):
     """A recording compared with the prediction of a saved gear or drive, every sample in the full band.
 
     Attributes:
@@ -147,6 +150,27 @@ class Prediction(ComparedByFields):
         sigma = float(weights.sum() ** -0.5)
         alike = all(abs(each.value - scale) < SIGNIFICANCE_SIGMA * each.sigma + MAX_APART for each in scales.values())
         return (scale, sigma) if alike and scale > SIGNIFICANCE_SIGMA * sigma else None
+
+    def _headline(self) -> str:
+        if self.refused:
+            return f"{self.name} by {self.gear}: refused, {self.refused}"
+        error, allowed = (typeset.quantity(each, self.unit) for each in (self.error, self.allowed))
+        return f"{self.name} by {self.gear}: {self.verdict}, error {error}, allowed {allowed}"
+
+    def _rows(self) -> Iterator[Row]:
+        if self.refused:
+            return
+        yield Row(f"error of {self.channel.replace('_', ' ')}", self.error, self.unit, note="rms")
+        yield Row("error allowed", self.allowed, self.unit)
+        if np.isfinite(self.plain):
+            yield Row("error of plain least squares", self.plain, self.unit, note="fitted to this recording itself")
+        yield Row("error of the mean", self.varies, self.unit)
+        yield Row("samples", self.samples)
+        for each in self.changes:
+            verdict = "changed" if each.significant else "not significant"
+            yield Row(each.name, each.value, each.unit, each.sigma, f"saved {typeset.number(each.unchanged)}, {verdict}")
+        if self.changes:
+            yield Row("error with these changes", self.error_with_changes, self.unit)
 
 
 def validations(gear_set: GearSet, kind: str, channel: str) -> list[Validation]:

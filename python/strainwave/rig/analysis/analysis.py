@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from strainwave.analysis.branches import thinned
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
+from strainwave.presentation import Pictured, Presented
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, check_catalogue, rated_torque_of
 from strainwave.rig.analysis.lost_motion import (
     LOST_MOTION,
@@ -34,6 +35,9 @@ from strainwave.rig.analysis.stiffness import Stiffness, segments_of, stiffness_
 from strainwave.rig.loop import Loop
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 Definition = Literal["secant", "regression", "softest"]
 DEFINITIONS: dict[Definition, str] = {
     "secant": "torque of the peak over the angle from zero torque to the peak",
@@ -48,14 +52,14 @@ MAX_POINTS = 100_000  # of a loop; of a longer one the means of so many stretche
 
 
 @dataclass(frozen=True, eq=False)
-class LoopAnalysis(ComparedByFields):
+class LoopAnalysis(ComparedByFields, Pictured):
     """Results of a loop; what it does not determine is None, and `remarks` give the reason.
 
     Attributes:
         loop: as it was measured; of a very long one, the means of short stretches
         cut: its branches and regimes
         stiffnesses: of each regime that was measured from zero torque to the peak, in the order of the cycle
-        hysteresis: widest separation at equal torque, as document T has it
+        hysteresis: widest separation at equal torque, as the torsional stiffness article has it
         width_at_zero: separation at zero torque after the peaks of this cycle [rad]
         rated_torque: of the gear, at the loaded shaft [N.m]
         hysteresis_loss: separation at zero torque after rated torque, as catalogues have it [rad]
@@ -122,10 +126,17 @@ class LoopAnalysis(ComparedByFields):
             return None
         return {"secant": found.secant, "regression": found.regression, "softest": found.softest}[definition]
 
+    def _headline(self) -> str:
+        return f"{self.loop._headline()}, {len(self.stiffnesses)} regimes"
+
+    def plot(self) -> Figure:
+        """Return a figure of the loop."""
+        return self.loop.plot()
+
 
 @dataclass(frozen=True)
-class LoopSummary:
-    """A row in the form of document T's Table 2.
+class LoopSummary(Presented):
+    """A row in the form of the torsional stiffness article's Table 2.
 
     Attributes:
         position: of the flexspline in its mount [rad]
@@ -350,10 +361,10 @@ def _of_peaks(found: LoopAnalysis) -> Iterator[str]:
 
 
 def table(analyses: Sequence[LoopAnalysis], definition: Definition = "softest") -> tuple[LoopSummary, ...]:
-    """Return rows in the form of document T's Table 2, one for each loop.
+    """Return rows in the form of the torsional stiffness article's Table 2, one for each loop.
 
-    T's table is one of slopes of the softest stretch: under this reading its loops close (erratum E-T4). Where a regime is one
-    straight line, all three definitions agree.
+    The article's table is one of slopes of the softest stretch: under this reading its loops close (its erratum 4). Where a
+    regime is one straight line, all three definitions agree.
 
     Args:
         analyses: of the loops, in the order of the rows

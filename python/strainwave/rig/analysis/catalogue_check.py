@@ -11,6 +11,7 @@ import numpy as np
 
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
+from strainwave.presentation import Statement
 from strainwave.rig.analysis.lost_motion import lost_motion, separation
 from strainwave.rig.analysis.regimes import Branch, Segmented, segment
 from strainwave.rig.analysis.result import Result, inverse, result
@@ -20,7 +21,7 @@ from strainwave.rig.loop import Loop, Side
 
 
 @dataclass(frozen=True)
-class CatalogueCheck:
+class CatalogueCheck(Statement):
     """A figure of the catalogue and the measured one.
 
     Attributes:
@@ -47,7 +48,7 @@ class CatalogueCheck:
         error = 0.5 * (self.measured.high - self.measured.low)
         return abs(self.measured.value - self.stated) <= hypot(self.spread * self.stated, 0.0 if np.isnan(error) else error)
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         if self.measured is None:
             return f"{self.name}: {self.stated:.4g} {self.unit} in the set; {self.why}"
         share = f"{100.0 * self.measured.value / self.stated:.0f} % of the " if self.stated else "the set has "

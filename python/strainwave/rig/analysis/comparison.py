@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from strainwave import arguments
+from strainwave.presentation import Presented, Statement
 from strainwave.rig.analysis.analysis import Definition, LoopAnalysis
 from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result
@@ -19,7 +20,7 @@ By = Literal["position", "unit"]
 
 
 @dataclass(frozen=True)
-class ComparedQuantity:
+class ComparedQuantity(Statement):
     """One quantity of several groups of loops.
 
     Attributes:
@@ -56,7 +57,7 @@ class ComparedQuantity:
         """True if the groups differ; None if neither stated errors nor repeats determine it."""
         return None if isnan(self.probability) else self.probability < self.level
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         unit, scale = ("degrees", 180.0 / pi) if self.unit == "rad" else (self.unit, 1.0)
         low, high = (f"{scale * pick(self.means):#.4g}" for pick in (min, max))
         scatter = f"{self.name}: {low} to {high} {unit}, spread {100 * self.relative:.2g} %"
@@ -69,7 +70,7 @@ class ComparedQuantity:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Presented):
     """Loops compared by position or by unit.
 
     Attributes:

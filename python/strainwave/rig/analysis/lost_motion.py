@@ -81,7 +81,7 @@ def lost_motion(falling: Branch, rising: Branch, rated: float, loop: Loop, freed
 
 
 def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) -> Width | None:
-    """Return the widest separation at equal torque, document T's hysteresis; None if the branches share no torque.
+    """Return the widest separation at equal torque, the article's hysteresis; None if no torque is shared.
 
     Of noisy points the widest is, by about the noise, wider than that of the loop without noise. An error of the pulleys'
     friction moves the branches apart, and with them the torque at which they are widest: at a knee the width changes by twice

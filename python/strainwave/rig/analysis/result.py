@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot, inf, isnan, nan
 
+from strainwave.presentation import Statement
+
 CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a result [1]
 
 
 @dataclass(frozen=True)
-class Result:
+class Result(Statement):
     """A number with its standard deviation and its interval of 95 %.
 
     Errors that two tests on one rig share, such as that of the radius of its disk, shift both results alike. `random` excludes
@@ -39,7 +41,7 @@ class Result:
         """Standard deviation, shared part included."""
         return hypot(self.random, self.shared)
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
         if isnan(self.sigma):
             return f"{self.value:.4g}{unit} (uncertainty unknown)"

@@ -9,6 +9,7 @@ from math import inf
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.presentation import Statement
 from strainwave.rig.analysis.regimes import RegimeName
 from strainwave.rig.analysis.result import student
 from strainwave.rig.analysis.stiffness import LocalStiffness, Stiffness
@@ -18,7 +19,7 @@ CONFIDENCE_LEVEL = 0.95  # probability that a regime without a soft spot shows n
 
 
 @dataclass(frozen=True)
-class SoftSpot:
+class SoftSpot(Statement):
     """A band of torque that is softer than the rest of its regime.
 
     Attributes:
@@ -38,7 +39,7 @@ class SoftSpot:
     at_least: float
     bounded: bool
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         name = self.regime.replace("_", " ")
         beyond = "" if self.bounded else ", where the regime ends"
         return f"{name}: {self.multiple:.2g} times as soft as the regime from {self.low:.3g} to {self.high:.3g} N.m{beyond}"

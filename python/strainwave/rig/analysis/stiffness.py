@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.rig.analysis.line import fit_line
 from strainwave.rig.analysis.regimes import Regime, RegimeName
 from strainwave.rig.analysis.result import Result, inverse, result, student
@@ -58,7 +59,7 @@ class LocalStiffness(ComparedByFields):
 
 
 @dataclass(frozen=True, eq=False)
-class Stiffness(ComparedByFields):
+class Stiffness(ComparedByFields, Presented):
     """Stiffness of a regime by three definitions, which agree if its points lie on one straight line.
 
     Attributes:
@@ -264,7 +265,7 @@ def closure_of_secants(stiffnesses: ArrayLike, torque: float) -> float:
 def soft_parts(stiffnesses: Sequence[float], width: float, torque: float) -> tuple[float, float]:
     """Return the torque over which the loading regimes must be soft, so that the loop closes with this width [N.m].
 
-    The reading under which a table of four slopes and a width is one loop (erratum E-T4): a loading regime is as soft as
+    The reading under which a table of four slopes and a width is one loop (its erratum 4): a loading regime is as soft as
     stated over part of its torque, and over the rest as stiff as the unloading regimes are in the mean.
 
     Args:

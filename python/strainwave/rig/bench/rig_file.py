@@ -68,7 +68,7 @@ def load(name_or_path: str | Path) -> Rig:
         ValueError: no such name or file, or what is wrong in it, with file, table and key
 
     >>> load("couple-rig").disk_radius
-    Value(value=0.1, sigma=5e-05, source='document T, Table 1: diameter 200 mm; assumed: 0.1 mm on the diameter')
+    Value(value=0.1, sigma=5e-05, source='torsional stiffness article, Table 1: diameter 200 mm; assumed: 0.1 mm on it')
     """
     path = _file(name_or_path)
     with at(f"{path}"):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.rig.loop import COLUMNS, Side, positive
 
 Array = NDArray[np.float64]
@@ -37,7 +38,7 @@ class Factors:
 
 
 @dataclass(frozen=True, eq=False)
-class Cycle(ComparedByFields):
+class Cycle(ComparedByFields, Presented):
     """A steady cycle from the positive peak to the negative one and back.
 
     Args:
@@ -74,7 +75,7 @@ class Cycle(ComparedByFields):
 
     @property
     def width(self) -> float:
-        """Widest separation at equal torque [rad]: document T's hysteresis."""
+        """Widest separation at equal torque [rad]: the torsional stiffness article's hysteresis."""
         return float(self._separations().max())
 
     @property

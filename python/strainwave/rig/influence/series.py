@@ -19,6 +19,7 @@ from strainwave.files.text_table import open_csv
 from strainwave.files.units import convert
 from strainwave.messages import listed, quoted
 from strainwave.number_texts import NUMBER, number_in
+from strainwave.presentation import Presented
 from strainwave.rig.analysis.analysis import analyse
 from strainwave.rig.analysis.regimes import RegimeName
 from strainwave.rig.influence.trend import Design, Law, Trend, trends
@@ -59,7 +60,7 @@ TEXTS = ("file", "unit")
 
 
 @dataclass(frozen=True, eq=False)
-class Series(ComparedByFields):
+class Series(ComparedByFields, Presented):
     """Loops measured one after the other, with what was varied between them.
 
     Args:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.student import student
 
@@ -25,7 +26,7 @@ MAX_EXPLAINED_SHARE = 0.95  # share of a factor's variance that others may expla
 
 
 @dataclass(frozen=True)
-class Slope:
+class Slope(Presented):
     """A coefficient of a regression.
 
     Attributes:
@@ -47,7 +48,7 @@ class Slope:
 
 
 @dataclass(frozen=True)
-class Trend:
+class Trend(Presented):
     """Dependence of a quantity on a factor, without the effects of the other factors and of the units.
 
     Attributes:

@@ -9,6 +9,7 @@ from math import degrees
 import numpy as np
 
 from strainwave.files.gear_set import GearSet
+from strainwave.presentation import Presented, Reported, counted
 from strainwave.rig.analysis.analysis import LoopAnalysis, analyse
 from strainwave.rig.analysis.comparison import By, Comparison, compare
 from strainwave.rig.bench.setup import Rig
@@ -20,7 +21,7 @@ from strainwave.rig.vision.angle import Angles
 
 
 @dataclass(frozen=True, eq=False)
-class Evaluation:
+class Evaluation(Presented, Reported):
     """Result of a test.
 
     Attributes:
@@ -56,6 +57,9 @@ class Evaluation:
     def labels(self) -> tuple[str, ...]:
         """Return the label of each loop: unit, position of the flexspline and, if several are alike, a number."""
         return tuple(_labels(self.loops))
+
+    def _headline(self) -> str:
+        return f"{self.name}, {counted(len(self.analyses), 'loop')}"
 
 
 def evaluate(

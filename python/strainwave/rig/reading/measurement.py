@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.folder import inside
 from strainwave.messages import listed, one_line, quoted
+from strainwave.presentation import Presented
+from strainwave.progress import Progress, in_turn
 from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Camera, Rig
@@ -46,7 +48,7 @@ class AngleReading(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TorsionTest(ComparedByFields):
+class TorsionTest(ComparedByFields, Presented):
     """A torsion test as read from its files.
 
     Attributes:
@@ -80,10 +82,8 @@ class TorsionTest(ComparedByFields):
     remarks: tuple[str, ...]
     deviations: tuple[str, ...] | None = None
 
-    def __repr__(self) -> str:
-        """Return the counts: the markers of all photographs would fill pages."""
-        counts = f"{len(self.steps)} steps, {len(self.hashes)} photographs, {len(self.loops)} loops"
-        return f"<TorsionTest in {self.folder}: {counts}>"
+    def _headline(self) -> str:
+        return f"{self.folder}, {len(self.steps)} steps, {len(self.hashes)} photographs, {len(self.loops)} loops"
 
 
 def read_test(
@@ -92,20 +92,20 @@ def read_test(
     rig: Rig | None = None,
     reference: str | None = None,
     camera: Camera | None = None,
-    progress: Callable[[str], None] = lambda name: None,
+    progress: Progress = None,
 ) -> TorsionTest:
     """Read the folder of a test: `rig.toml`, `steps.csv` and the photographs that it names.
 
     The angle of a position and unit is 0 at its first photograph at the positive peak, unless another one is chosen (erratum
-    E-T11). The remarks list each photograph without an angle; the other steps remain. If the folder contains the
-    planned steps, `plan.csv`, the record is compared with them.
+    erratum 11 of the torsional stiffness article). The remarks list each photograph without an angle; the other steps remain.
+    If the folder contains the planned steps, `plan.csv`, the record is compared with them.
 
     Args:
         folder: of the test
         rig: instead of `rig.toml`
         reference: name of the photograph whose angle is 0, for the position and unit that it belongs to
         camera: instead of that of the rig
-        progress: is called with the name of each photograph before it is read
+        progress: as of `sw.simulate`
 
     Returns:
         The steps, the angles of the photographs [rad], and a loop for each position, unit and cycle.
@@ -135,7 +135,8 @@ def read_test(
     frames: list[Frame] = []
     for place, of_place in _places(steps).items():
         named = [step for step in of_place if step.image is not None]
-        frames_of_place = [_look(folder, step, rig, progress) for step in named]
+        with in_turn(progress, len(named)) as turn:
+            frames_of_place = [_look(folder, step, rig, turn) for step in named]
         useful = [step for step, frame in zip(named, frames_of_place, strict=True) if frame.markers is not None]
         if useful:
             chosen = reference if reference in [step.image for step in useful] else _at_peak(useful)
@@ -169,9 +170,9 @@ def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
     return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
 
 
-def _look(folder: Path, step: Step, rig: Rig, progress: Callable[[str], None]) -> Frame:
+def _look(folder: Path, step: Step, rig: Rig, turn: Callable[[str], None]) -> Frame:
     name = str(step.image)
-    progress(name)
+    turn(name)
     return replace(look(photograph_of(step, folder), camera=rig.camera), name=name)  # as the steps name it, folder and all
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
@@ -11,6 +11,7 @@ from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
+from strainwave.progress import Progress
 from strainwave.rig.analysis.sides import friction_at_rest, without_friction
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.loop import Loop
@@ -43,15 +44,13 @@ class EvaluationOptions:
     units: Mapping[str, str] | None = None
 
 
-def evaluate_paths(
-    paths: Sequence[Path], given: EvaluationOptions, progress: Callable[[str], None] = lambda stage: None
-) -> tuple[Evaluation, list[Path]]:
+def evaluate_paths(paths: Sequence[Path], given: EvaluationOptions, progress: Progress = None) -> tuple[Evaluation, list[Path]]:
     """Read folders of tests and files of loops, and evaluate them together.
 
     Args:
         paths: folders and files
         given: what the files do not contain
-        progress: is called with the name of each photograph before it is read
+        progress: as of `sw.simulate`
 
     Returns:
         What was found, and the files that were read for it, photographs left out.
@@ -82,7 +81,7 @@ def evaluate_paths(
 
 
 def _read(
-    paths: Sequence[Path], given: EvaluationOptions, progress: Callable[[str], None]
+    paths: Sequence[Path], given: EvaluationOptions, progress: Progress
 ) -> tuple[list[TorsionTest], list[Loop], list[Path]]:
     if missing := [path for path in paths if not path.exists()]:
         raise FileNotFoundError(f"{missing[0]}: there is no such folder or file")

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from strainwave.presentation import Statement
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.running.plan import Plan
 
@@ -20,7 +21,7 @@ Masses = tuple[int, int]  # on the positive and the negative pans [mg]
 
 
 @dataclass(frozen=True)
-class Deviation:
+class Deviation(Statement):
     """A deviation of a record from its plan.
 
     Attributes:
@@ -39,7 +40,7 @@ class Deviation:
     step: int
     words: str
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         return self.words
 
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot, sqrt
 from typing import Literal
 
 import numpy as np
 
-from strainwave import arguments
+from strainwave import arguments, typeset
+from strainwave.presentation import Presented, Row
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import not_negative, signed
@@ -37,7 +38,7 @@ class Contribution:
 
 
 @dataclass(frozen=True)
-class Budget:
+class Budget(Presented):
     """Uncertainty of a result: independent contributions, whose squares add up (JCGM 100:2008, eq. 10).
 
     Attributes:
@@ -51,9 +52,9 @@ class Budget:
     >>> budget.sigma, budget.share(budget.contributions[0])
     (0.0005, 0.64)
     >>> print(budget)
-    torque: 0.36 ± 0.0005 N.m (0.14 %)
-      radius   0.0004    64 %  common
-      masses   0.0003    36 %  random
+    Budget: torque 0.36000 ± 0.00050 N·m (0.14 %)
+      radius  0.0004  N·m  64 %, common
+      masses  0.0003  N·m  36 %, random
     """
 
     quantity: str
@@ -80,15 +81,14 @@ class Budget:
         """Share of a contribution in the variance of the result [1]."""
         return round(contribution.sigma**2 / self.sigma**2, 12)
 
-    def __str__(self) -> str:
-        """The budget as a table."""
+    def _headline(self) -> str:
         relative = f" ({100.0 * self.sigma / abs(self.value):.2g} %)" if self.value else ""
-        width = max((len(each.name) for each in self.contributions), default=0)
-        rows = []
+        return f"{self.quantity} {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}{relative}"
+
+    def _rows(self) -> Iterator[Row]:
         for each in self.contributions:
-            share = f"{100.0 * self.share(each):3.0f} %"
-            rows.append(f"  {each.name:<{width}}   {each.sigma:<9.2g}{share}  {each.kind}")
-        return "\n".join([f"{self.quantity}: {self.value:.4g} ± {self.sigma:.2g} {self.unit}{relative}", *rows])
+            share = f"{100.0 * self.share(each):.0f} %, {each.kind}"
+            yield Row(each.name, each.sigma, self.unit, note=share)
 
 
 def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
@@ -110,11 +110,12 @@ def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
 
     >>> from strainwave import rig
     >>> print(torque_budget(rig.load("couple-rig"), rig.Step(1, mass_positive=0.35)))
-    torque: 0.3432 ± 0.0035 N.m (1 %)
-      friction of the pulleys, share of the torque   0.0034    96 %  by direction
-      gravity                                        0.0007     4 %  common
-      masses                                         0.00017    0 %  random
-      radius of the disk                             0.00017    0 %  common
+    Budget: torque 0.3432 ± 0.0035 N·m (1 %)
+      friction of the pulleys, share of the torque
+                           0.0034323  N·m  96 %, by direction
+      gravity                 0.0007  N·m  4 %, common
+      masses              0.00017336  N·m  0 %, random
+      radius of the disk  0.00017162  N·m  0 %, common
     """
     force = rig.gravity.value * rig.disk_radius.value * float(arm(rig, angle))
     torque = force * (step.mass_positive - step.mass_negative)
@@ -187,12 +188,13 @@ def stiffness_budget(
     >>> from strainwave.rig import load, Step
     >>> steps = [Step(n, mass_positive=0.05 * n) for n in range(1, 8)]
     >>> print(stiffness_budget(load("couple-rig"), 4.51, steps, angle_sigma=4e-5))
-    stiffness: 4.51 ± 0.046 N.m/rad (1 %)
-      friction of the pulleys, share of the torque   0.045     95 %  by direction
-      gravity                                        0.0092     4 %  common
-      reading of the markers                         0.0031     0 %  random
-      radius of the disk                             0.0023     0 %  common
-      masses                                         0.0022     0 %  random
+    Budget: stiffness 4.510 ± 0.046 N·m/rad (1 %)
+      friction of the pulleys, share of the torque
+                                 0.0451  N·m/rad  95 %, by direction
+      gravity                 0.0091978  N·m/rad  4 %, common
+      reading of the markers  0.0031358  N·m/rad  0 %, random
+      radius of the disk       0.002255  N·m/rad  0 %, common
+      masses                  0.0022435  N·m/rad  0 %, random
     """
     arguments.number("stiffness", stiffness, "N.m/rad", low=0.0)
     budgets = [torque_budget(rig, step, angle) for step in steps]

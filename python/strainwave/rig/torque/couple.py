@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.presentation import Statement
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.torque.torque import Torque
@@ -29,7 +30,7 @@ MIN_PHOTOGRAPHS = 6  # three vectors are fitted
 
 
 @dataclass(frozen=True)
-class Couple:
+class Couple(Statement):
     """Shift of the centre of a turning shaft with the torque.
 
     Attributes:
@@ -56,7 +57,7 @@ class Couple:
         """True if the shift can be chance."""
         return self.size <= MIN_SHIFT_SIGMA * self.sigma
 
-    def __str__(self) -> str:
+    def _headline(self) -> str:
         """The finding in one line."""
         moved = f"{self.size * self.span:.3g} px"
         if self.scale is not None:

@@ -1,11 +1,11 @@
 r"""Torque on the loaded shaft: from what lies on the pans, less what the pulleys hold, and how well it is known.
 
-With m the total on the two pans of a pair (erratum E-T7), the cords give
+With m the total on the two pans of a pair (its erratum 7), the cords give
 
 .. math:: T = (m_+ - m_-)\, g\, r\, a(\varphi)
 
 where a = 1 of a cord wound on the rim, and a = cos(angle - tangent) of one from a fixed point. The friction of the pulleys acts
-against the motion (erratum E-T8): the shaft gets T - T_p when it moved forward, T + T_p when it moved backward. After a
+against the motion (its erratum 8): the shaft gets T - T_p when it moved forward, T + T_p when it moved backward. After a
 reversal it does not move until the torque has changed by 2 T_p; until then the pulleys hold something in between. All three
 cases are one play of half width T_p = T_0 + s \|T\| between the torque of the cords and that of the shaft.
 """
@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop
@@ -30,7 +31,7 @@ CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a torque [1]
 
 
 @dataclass(frozen=True, eq=False)
-class Torque(ComparedByFields):
+class Torque(ComparedByFields, Presented):
     """Torques of the steps of a test, each of shape (n,).
 
     Attributes:

@@ -7,22 +7,22 @@ import math
 from strainwave import arguments, hysteresis, kinematics, stiffness
 from strainwave._core import Gear
 
-# Document T, Table 2: degrees of the flexspline in its mount: N.m/rad of positive unloading, negative loading, negative
-# unloading and positive loading; width in degrees. All at the input of a gear 1:100, up to +-0.36 N.m.
+# The torsional stiffness article, Table 2: degrees of the flexspline in its mount: N.m/rad of positive unloading, negative
+# loading, negative unloading and positive loading; width in degrees. All at the input of a gear 1:100, up to +-0.36 N.m.
 TABLE_2 = {
     0: (4.51, 0.31, 4.85, 0.30, 50.5),
     60: (4.36, 0.29, 3.59, 0.33, 51.9),
     120: (4.19, 0.32, 5.08, 0.33, 49.4),
 }
 PEAK_TORQUE = 0.36  # N.m
-SOFT_ONSET = 0.03  # N.m, assumed: torque at which the soft regimes begin, which the table does not state (erratum E-T4)
+SOFT_ONSET = 0.03  # N.m, assumed: torque at which the soft regimes begin, which the table does not state (its erratum 4)
 NEGLIGIBLE_STIFFNESS = 1e-6  # N.m/rad, of the spring of a gear whose torque is all hysteresis
 
 
 def printed_gear(position: int) -> Gear:
-    """Return the gear of document T with its flexspline turned by 0, 60 or 120 degrees, as Table 2 prints it.
+    """Return the gear of the torsional stiffness article with its flexspline at 0, 60 or 120 degrees, as Table 2 prints it.
 
-    The printed stiffnesses are read as slopes between the knees of the loop (erratum E-T4). The gear is 1:100.
+    The printed stiffnesses are read as slopes between the knees of the loop (its erratum 4). The gear is 1:100.
 
     Raises:
         ValueError: no row of the table
@@ -31,7 +31,9 @@ def printed_gear(position: int) -> Gear:
     51.9
     """
     if position not in TABLE_2:
-        raise ValueError(f"position = {position} degrees must be 0, 60 or 120: the rows of document T's Table 2")
+        raise ValueError(
+            f"position = {position} degrees must be 0, 60 or 120: the rows of the torsional stiffness article's Table 2"
+        )
     *slopes, width = TABLE_2[position]
     return gear_of_regimes(*slopes, width=math.radians(width), peak=PEAK_TORQUE)
 
@@ -75,7 +77,7 @@ def gear_of_regimes(
         ValueError: a number out of its range; or the soft regimes take more torque than the peak has: no loop is so wide
 
     Source:
-        document T, Table 2, and erratum E-T4
+        the torsional stiffness article, Table 2, and erratum 4 of the torsional stiffness article
 
     >>> gear = gear_of_regimes(4.51, 0.31, 4.85, 0.30, width=math.radians(50.5), peak=0.36)
     >>> gear.hysteresis.positive_unloading, gear.hysteresis.onset

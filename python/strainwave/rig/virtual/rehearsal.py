@@ -17,31 +17,31 @@ from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import TABLE_2, peak_needed, printed_gear
 from strainwave.rig.virtual.render import usual_scene
 
-DOCUMENT_T = "document-t"  # the gears whose loops are the rows of document T's Table 2
+ARTICLE = "torsional-stiffness-article"  # the gears whose loops are the rows of the torsional stiffness article's Table 2
 
 
 def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
-    """The gear of a set or a gear file; or, of document T, the gear for the position of each step.
+    """The gear of a set or a gear file; or, of the torsional stiffness article, the gear for the position of each step.
 
     Raises:
         ValueError: there is no such gear
     """
-    if name == DOCUMENT_T:
+    if name == ARTICLE:
         return lambda step: printed_gear(round(degrees(step.position)))
     return GearSet.read(name).gear
 
 
 def narrower(positions: Sequence[float], peak: float) -> list[str]:
-    """Return in words the rows of document T's Table 2 that do not reach their printed width under a peak torque [N.m].
+    """Return in words the rows of the article's Table 2 that do not reach their printed width under a peak torque [N.m].
 
     >>> narrower([0.0], 0.343)
     []
     >>> print(*narrower([np.radians(60.0)], 0.343))
-    at 60 degrees document T's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower
+    at 60 degrees the torsional stiffness article's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower
     """
     return [
-        f"at {place} degrees document T's loop has its {TABLE_2[place][-1]:g} degrees from {peak_needed(place):.3f} N.m on; "
-        f"at {peak:.3f} N.m it is narrower"
+        f"at {place} degrees the torsional stiffness article's loop has its {TABLE_2[place][-1]:g} degrees from "
+        f"{peak_needed(place):.3f} N.m on; at {peak:.3f} N.m it is narrower"
         for place in (round(degrees(position)) for position in positions)
         if peak_needed(place) > peak
     ]
@@ -57,7 +57,7 @@ def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gea
         seed: of the noise; another one each time if None
 
     >>> from strainwave.rig import Step, load
-    >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("document-t"))
+    >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("torsional-stiffness-article"))
     >>> source.angles.round(4).tolist()
     [0.0, -0.0109]
     """

@@ -19,13 +19,14 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import save
 from strainwave.files.writing import making, replacing
+from strainwave.presentation import Presented
+from strainwave.progress import Progress, by_count
 from strainwave.rig.bench.rig_file import write_rig
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import append_step
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render, usual_scene
-from strainwave.simulation.run import progressing
 
 Array = NDArray[np.float64]
 Fault = Literal["blurred", "over-exposed", "marker missing", "swapped", "skipped"]
@@ -45,7 +46,7 @@ COLUMNS = {
 
 
 @dataclass(frozen=True, eq=False)
-class VirtualTest(ComparedByFields):
+class VirtualTest(ComparedByFields, Presented):
     """A virtual test and its truth: the recorded steps, and the true values of each, shape (n,).
 
     Attributes:
@@ -94,7 +95,7 @@ def simulate_test(
     virgin: bool = False,
     mass_errors: bool = False,
     faults: Mapping[int, Fault] | None = None,
-    progress: bool = False,
+    progress: Progress = None,
 ) -> VirtualTest:
     """Run a torsion test on a virtual rig and write its folder as a real one leaves it.
 
@@ -117,7 +118,7 @@ def simulate_test(
         mass_errors: whether each mass of the set is off by an error of its standard deviation, or exactly as stated
         faults: what goes wrong, by the number of the step: a photograph "blurred", "over-exposed", with a "marker missing" or
             "swapped" with that of the next step; or a step that is made but "skipped" in the record
-        progress: whether a bar shows how far it is
+        progress: as of `sw.simulate`
 
     Returns:
         The test and its truth.
@@ -176,14 +177,14 @@ def _write(
     seed: int,
     faults: Mapping[int, Fault],
     stated: Rig,
-    progress: bool,
+    progress: Progress,
 ) -> None:
     folder = test.folder
     write_rig(stated, folder / "rig.toml")
     for number, each in enumerate(gears, 1):
         save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
     _write_truth(test, scene, seed, faults)
-    with progressing(progress, len(recorded)) as report:
+    with by_count(progress, "drawing pictures", len(recorded)) as report:
         for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
             fault = faults.get(step.number)
             if fault != "skipped":

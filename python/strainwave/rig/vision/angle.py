@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from strainwave.messages import quoted, shortened
+from strainwave.progress import Progress, in_turn
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT
 from strainwave.rig.vision.follow import Angles, camera_seen, follow
@@ -28,7 +29,7 @@ def measure_angles(
     reference: str | None = None,
     radius: tuple[float, float] | None = None,
     dark: bool | None = None,
-    progress: Callable[[str], None] = lambda stage: None,
+    progress: Progress = None,
 ) -> Angles:
     """Return the angles of a target with two round markers, from its photographs in the order of the test.
 
@@ -42,7 +43,7 @@ def measure_angles(
         reference: name of the image whose angle is 0; the first with an angle if None
         radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
         dark: whether markers are darker than the ground; either if None
-        progress: is called with the name of each image as it begins
+        progress: as of `sw.simulate`
 
     Returns:
         Angles [rad], positive against the clock, and their standard deviations, shape (images with an angle,), and remarks.
@@ -60,9 +61,10 @@ def measure_angles(
     [0.0, 50.0, 100.0]
     """
     frames = []
-    for source in _sources(images):
-        progress(source.name if isinstance(source, Image) else Path(source).name)
-        frames.append(look(source, camera=camera, radius=radius, dark=dark))
+    with in_turn(progress) as turn_of:
+        for source in _sources(images):
+            turn_of(source.name if isinstance(source, Image) else Path(source).name)
+            frames.append(look(source, camera=camera, radius=radius, dark=dark))
     return follow(frames, camera=camera, reference=reference)
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
 
 Array = NDArray[np.float64]
@@ -25,7 +26,7 @@ _MAX_ITERATIONS = 100  # of the circle fit
 
 
 @dataclass(frozen=True, eq=False)
-class Circle(ComparedByFields):
+class Circle(ComparedByFields, Presented):
     """A circle fitted to points.
 
     Attributes:
@@ -50,7 +51,7 @@ class Circle(ComparedByFields):
 
 
 def kasa(x: Series, y: Series) -> Circle:
-    """Return Kåsa's circle, which document T uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
+    """Return Kåsa's circle, which the torsional stiffness article uses: least squares of (x - a)^2 + (y - b)^2 - r^2.
 
     Args:
         x, y: of the points, three or more, not all on a line

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.messages import quoted
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_at
 from strainwave.rig.vision.frame import Frame
@@ -30,7 +31,7 @@ _MAX_TILT_ERROR_SIGMA = 10.0  # error of an angle by the tilt of the camera, in 
 
 
 @dataclass(frozen=True, eq=False)
-class Angles(ComparedByFields):
+class Angles(ComparedByFields, Presented):
     """Angles of the images that give one, in their order.
 
     Attributes:

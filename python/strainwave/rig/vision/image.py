@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.budget import RefusedFile, open_regular, read_regular
 from strainwave.messages import one_line, quoted
+from strainwave.presentation import Presented
 from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey, check_size, decoded, grey_of
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
@@ -29,7 +30,7 @@ MAX_FRAMES = 100_000  # of a video: an hour at 25 a second
 
 
 @dataclass(frozen=True, eq=False)
-class Image(ComparedByFields):
+class Image(ComparedByFields, Presented):
     """A picture as grey values.
 
     Attributes:

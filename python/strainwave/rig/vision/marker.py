@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.blob import blobs
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, in_picture
@@ -26,7 +27,7 @@ _MAX_SHARE_IF_SMALL, _MAX_RESIDUAL_IF_SMALL = 0.05, 0.5  # of a small marker: re
 
 
 @dataclass(frozen=True)
-class Marker:
+class Marker(Presented):
     """A circular marker in an image; x points right, y down, and the middle of the first pixel is 0, 0.
 
     Attributes:

@@ -34,12 +34,12 @@ def test_draws_scatter_as_the_noise_says(by: float) -> None:
 
 
 def test_the_same_seed_draws_the_same_and_progress_is_told() -> None:
-    told: list[tuple[int, int]] = []
+    told: list[tuple[str, float]] = []
     found = sw.fit(START, table(1e-3 * np.random.default_rng(0).normal(size=800)), FREE)
-    one = bootstrap(found, 20, seed=5, progress=lambda done, draws: told.append((done, draws)))
+    one = bootstrap(found, 20, seed=5, progress=lambda stage, share: told.append((stage, share)))
     assert one == bootstrap(found, 20, seed=5)
     assert one != bootstrap(found, 20, seed=6)
-    assert told == [(draw, 20) for draw in range(1, 21)]
+    assert told == [("drawing measurements anew", draw / 20) for draw in range(1, 21)]
 
 
 def test_what_only_a_prior_tells_scatters_as_it_and_what_is_tied_follows() -> None:

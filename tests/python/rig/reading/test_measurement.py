@@ -208,7 +208,7 @@ def tested(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.slow("rig")
 def test_photographs_and_masses_give_the_stiffness_of_the_gear(tested: Path) -> None:
     seen: list[str] = []
-    test = read_test(tested, progress=seen.append)
+    test = read_test(tested, progress=lambda name, share: seen.append(name))
     (loop,) = test.loops
     assert seen == [step.image for step in test.steps]
     assert len(loop) == len(test.steps) - 1

@@ -286,7 +286,9 @@ def test_files_that_cannot_be_read_are_faults_of_their_images(tmp_path: Path) ->
     (tmp_path / "b.png").write_bytes(b"")
     (tmp_path / "c.png").write_bytes((tmp_path / "a.png").read_bytes()[:3000])
     seen: list[str] = []
-    frames = measure_angles([tmp_path / f"{name}.png" for name in "abcd"], progress=seen.append).frames
+    frames = measure_angles(
+        [tmp_path / f"{name}.png" for name in "abcd"], progress=lambda name, share: seen.append(name)
+    ).frames
     assert frames[0].fault == ""
     assert frames[1].fault == 'cannot be read: "b.png" is empty'
     assert frames[2].fault.startswith('cannot be read: "c.png" is damaged: ')

@@ -1,0 +1,59 @@
+"""A result as HTML of a notebook, readable on a light and on a dark page, with its picture inline."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from hashlib import sha256
+from html import escape
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree
+
+from strainwave import typeset
+from strainwave.drawing import svg
+from strainwave.messages import one_line
+from strainwave.presentation import MAX_PRINTED_ROWS, Row, number_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# A notebook does not tell a result whether its page is dark: letters take the colour of the page, curves one that both carry.
+COLOURS = {
+    "ink": "currentColor", "muted": "#808080", "rule": "rgba(128, 128, 128, 0.35)", "measured": "#3d85c6",
+    "model": "#dd6b20", "held-out": "#a06cd5", "earlier": "#a88a1c",
+}  # fmt: skip
+
+
+def html(kind: str, headline: str, rows: Sequence[Row], remarks: Sequence[str], figure: Figure | None) -> str:
+    """Return a result as HTML: headline, table, remarks and picture. All texts are escaped."""
+    style = "; ".join(f"--{name}: {colour}" for name, colour in COLOURS.items())
+    more = len(rows) - MAX_PRINTED_ROWS
+    parts = [
+        f"<p><strong>{_text(kind)}</strong> {_text(headline)}</p>",
+        f"<table>{''.join(map(_row, rows[:MAX_PRINTED_ROWS]))}</table>" if rows else "",
+        f"<p>… and {more} more: <code>to_dict()</code> has all</p>" if more > 0 else "",
+        *(f"<p><em>{_text(remark)}</em></p>" for remark in remarks),
+        "" if figure is None else f'<div style="max-width: 36em">{_drawing(figure, f"{kind} {headline}")}</div>',
+    ]
+    return f'<div class="strainwave" style="{style}">{"".join(parts)}</div>'
+
+
+def _row(row: Row) -> str:
+    left = 'style="text-align: left"'
+    name = f"<th {left}>{_text(row.name)}</th>"
+    if isinstance(row.value, str):
+        return f'<tr>{name}<td colspan="3" {left}>{_text(", ".join(filter(None, (row.value, row.note))))}</td></tr>'
+    number = f'<td style="text-align: right; white-space: nowrap">{_text(number_text(row))}</td>'
+    return f"<tr>{name}{number}<td {left}>{_text(typeset.unit(row.unit))}</td><td {left}>{_text(row.note)}</td></tr>"
+
+
+def _text(text: str) -> str:
+    return escape(one_line(text))
+
+
+def _drawing(figure: Figure, title: str) -> str:
+    """Return a figure as SVG whose identifiers no other picture of the notebook has."""
+    figure.set_facecolor("none")
+    for axes in figure.axes:
+        axes.set_facecolor("none")
+    drawing = ElementTree.tostring(svg.element(figure, "NAME", title), encoding="unicode")
+    return drawing.replace("NAME-", f"sw{sha256(drawing.encode()).hexdigest()[:10]}-")

@@ -1,0 +1,126 @@
+"""Progress of long calls: one argument, which means the same everywhere.
+
+Every long call takes `progress`: None shows a bar on a terminal once the call has taken a second, True shows it at once,
+False shows nothing, and a function is called with what is worked on and with the share of the whole that is done.
+
+>>> told = []
+>>> with by_count(lambda stage, share: told.append((stage, share)), "simulating", 4) as done:
+...     for step in range(5):
+...         done(step)
+>>> told[-2:]
+[('simulating', 0.75), ('simulating', 1.0)]
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from math import isnan, nan
+from threading import Lock, Timer, current_thread, main_thread
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from strainwave.messages import shortened
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as RichProgress
+
+Tell: TypeAlias = Callable[[str, float], None]  # called with a stage and the share done, in [0, 1], nan if not known
+Progress: TypeAlias = bool | Tell | None
+SHOWN_AFTER = 1.0  # s, that a call takes before its bar appears
+_shown = Lock()  # of the one bar that a terminal has: calls within a call show none
+
+
+@contextmanager
+def by_count(progress: Progress, stage: str, total: int) -> Iterator[Callable[[int], None] | None]:
+    """Yield a function to call with how many of `total` are done; None if nobody watches."""
+    with _told(progress) as tell:
+        yield None if tell is None else lambda done: tell(stage, done / max(total, 1))
+
+
+@contextmanager
+def in_turn(progress: Progress, total: int | None = None) -> Iterator[Callable[[str], None]]:
+    """Yield a function to call with the name of each of `total` parts as its turn comes; of None the count is not known."""
+    with _told(progress) as tell:
+        begun = 0
+
+        def turn(name: str) -> None:
+            nonlocal begun
+            if tell is not None:
+                tell(name, min(begun / total, 1.0) if total else nan)
+            begun += 1
+
+        yield turn
+
+
+@contextmanager
+def _told(progress: Progress) -> Iterator[Tell | None]:
+    """
+    Raises:
+        TypeError: `progress` is neither None, True, False nor a function
+    """
+    if callable(progress):
+        yield progress
+        return
+    if not (progress is None or isinstance(progress, bool)):
+        raise TypeError(f"progress = {shortened(progress)} must be True, False, None, or a function of a stage and a share")
+    wanted = sys.stderr.isatty() if progress is None else progress
+    if not wanted or current_thread() is not main_thread() or not _shown.acquire(blocking=False):
+        yield None
+        return
+    bar = _Bar(0.0 if progress else SHOWN_AFTER)
+    try:
+        yield bar.tell
+    finally:
+        bar.close()
+        _shown.release()
+
+
+class _Bar:
+    """A bar on standard error, which appears after a delay [s] and disappears at the end."""
+
+    def __init__(self, delay: float) -> None:
+        self._lock = Lock()
+        self._bar: RichProgress | None = None
+        self._last: tuple[str, float] = ("", nan)
+        self._closed = False
+        self._timer = Timer(delay, self._open)
+        self._timer.daemon = True
+        if delay > 0.0:
+            self._timer.start()
+        else:
+            self._open()
+
+    def tell(self, stage: str, share: float) -> None:
+        self._last = stage, share
+        if self._bar is not None:
+            self._update()
+
+    def close(self) -> None:
+        """End the bar, and the wait for it."""
+        self._timer.cancel()
+        with self._lock:
+            self._closed = True
+            if self._bar is not None:
+                self._bar.stop()
+
+    def _open(self) -> None:
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+        columns: tuple[Any, ...] = (SpinnerColumn(), BarColumn(), TaskProgressColumn())
+        columns += (TextColumn("{task.description}", markup=False), TimeElapsedColumn())
+        with self._lock:
+            if self._closed:
+                return
+            bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            bar.add_task("", total=None)
+            bar.start()
+            self._bar = bar
+        self._update()
+
+    def _update(self) -> None:
+        stage, share = self._last
+        assert self._bar is not None
+        whole = None if isnan(share) else 1.0
+        self._bar.update(self._bar.task_ids[0], description=stage, total=whole, completed=0.0 if whole is None else share)
