@@ -1,7 +1,7 @@
 """False alarms of the check for shape: `python -m tests.evidence.shapes [COUNT]`.
 
 Tables of friction, torsion loops and logs are drawn of laws that `identify` fits, with white noise. The model is right, and
-what it leaves has no shape: the check names one in 1 of 1000 by chance, and fails in none.
+what it leaves has no shape: chance makes one in 1 of 1000 for each abscissa, and the check fails in none.
 """
 
 from __future__ import annotations

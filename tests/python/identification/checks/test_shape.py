@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from strainwave.demo import torsion_rig
 from strainwave.identification.checks.shape import MAX_SHARE_OF_SHAPE, NAME, has_small_shape, judged_shape
 from strainwave.report.identify import identify_report
+
+from tests.evidence import shapes
 
 ANGLE = np.linspace(0.0, 200.0, 4000)
 NOISE = 0.1 * np.random.default_rng(5).normal(size=len(ANGLE))
@@ -50,3 +54,10 @@ def test_the_saw_tooth_of_the_torsion_article_stands_in_the_verdict() -> None:
     assert check.value == pytest.approx(0.82, abs=0.05)  # N.m
     page = identify_report(found)
     assert "all 5 checks passed; what the model leaves has a shape of RMS 0.824 N·m." in page.replace("\N{NO-BREAK SPACE}", " ")
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("draw", [shapes.table, shapes.loop, shapes.log])
+def test_right_records_with_white_noise_have_no_shape(draw: Callable[[np.random.Generator], shapes.Drawn]) -> None:
+    """A few of `python -m tests.evidence.shapes`, which draws 200 of each."""
+    assert shapes.named(draw, 3) == (3, 0, 0)
