@@ -30,8 +30,8 @@ def main() -> None:
         if isinstance(end, SystemExit) and end.code != EXIT_INTERRUPTED:
             raise
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-        print(f"strainwave: interrupted; {', '.join(map(str, written)) or 'nothing'} written", file=sys.stderr)
-        sys.exit(EXIT_INTERRUPTED)
+        print(f"strainwave: interrupted; {', '.join(map(str, written)) or 'nothing'} written", file=sys.stderr, flush=True)
+        os._exit(EXIT_INTERRUPTED)  # the end of Python itself aborts if a package was being imported
 
 
 def _interrupt(_: int, frame: FrameType | None) -> None:

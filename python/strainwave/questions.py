@@ -24,7 +24,7 @@ class Answer:
         label: the answer in words
         given: the statement, as keyword arguments of `FileMapping`; numbers that only a person knows as an example
         numbers: these numbers in words, by the names of their constants or columns
-        files: paths of files to read with it
+        files: further words of the command, as paths of files to read with it
         gives: what the file is with this answer, in words
     """
 

@@ -26,14 +26,19 @@ class FileOptions:
 
     mapping: Annotated[Path | None, typer.Option(help="TOML file with the columns of all or some files.")] = None
     column: Annotated[
-        list[str] | None, typer.Option(help="A column's name or number in the files, as speed=3; repeat as needed.")
+        list[str] | None,
+        typer.Option(metavar="NAME=COLUMN", help="A column's name or number in the files, as speed=3; repeat as needed."),
     ] = None
     unit: Annotated[
-        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+        list[str] | None,
+        typer.Option(metavar="NAME=UNIT", help="Unit of a column whose header has none, as torque=N.m; repeat as needed."),
     ] = None
     constant: Annotated[
         list[str] | None,
-        typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed.",
+        ),
     ] = None
     side: Annotated[
         str | None, typer.Option(help="Side of a table, or of angles, whose names do not contain it: input or output.")

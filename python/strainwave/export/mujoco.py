@@ -19,7 +19,7 @@ import numpy as np
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.robot import Element, Robot, child, kept, written
+from strainwave.export.robot import Element, Robot, child, gears_of_joints, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed
 from strainwave.tuning.drawn import drawn_gears
@@ -44,7 +44,7 @@ def mjcf(
     *,
     max_torque: float | None = None,
     load_inertia: float | None = None,
-    into: str | None = None,
+    into: str | Path | None = None,
     joint: str | Mapping[str, GearSet | Drive | Gear | str | Path] | None = None,
     keep: str | None = None,
     draws: int = 0,
@@ -57,7 +57,7 @@ def mjcf(
         drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
-        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        into: MJCF file of a robot, or its text; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another gear as
             "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a gear for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the gear's, as "damping,armature"
@@ -84,7 +84,7 @@ def mjcf(
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     if into is not None and joint is not None:
         robot = Robot.of(into)
-        gears = _gears_of_joints(robot, joint, gear_set)
+        gears = gears_of_joints(robot, joint, gear_set)
         exports = {
             shaft: _with_elements(robot, shaft, each, max_torque, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
             for shaft, each in gears.items()
@@ -104,27 +104,6 @@ def mjcf(
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
     names = listed(dict.fromkeys(each.name for each, _, _ in exports.values()))
     return Exported("mjcf", names, files, {}, losses, left_out, remarks)
-
-
-def _gears_of_joints(
-    robot: Robot, joint: str | Mapping[str, GearSet | Drive | Gear | str | Path], default: GearSet
-) -> dict[str, GearSet]:
-    """Return the gear of each joint that gets one, in the order of the robot.
-
-    Raises:
-        ValueError: the robot has no such hinge
-    """
-    if isinstance(joint, Mapping):
-        chosen = {name: gear_set_of(gear) for name, gear in joint.items()}
-    else:
-        entries = [each.strip().partition("=") for each in joint.split(",")]
-        chosen = {name: GearSet.read(gear) if gear else default for name, _, gear in entries}
-    others = chosen.pop("all", None)
-    hinges = list(robot.hinges())
-    for name in chosen:
-        robot.hinge(name)
-    gears = {name: chosen.get(name, others) for name in hinges}
-    return {name: gear for name, gear in gears.items() if gear is not None}
 
 
 def _with_elements(
@@ -243,10 +222,10 @@ def attach(
     """
     shaft = robot.hinge(joint)
     remarks = list(robot.replace_friction(shaft, friction_attributes(elements.at_output, robot.timestep), keep))
-    link = robot.parents[shaft]
+    link = robot.body_of(shaft)
     before = len(robot.root.findall("actuator/*"))
     rotor = add_gear(robot, link, shaft, elements, actuator, name)
-    added = len(robot.root.findall("actuator/*")) - before
+    added = robot.root.findall("actuator/*")[before:]
     remarks += [*robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
     # Semi-implicit Euler with explicit damping is stable for k dt^2 + 2 c dt < 4 J.
     lightest = 0.25 * stiffness_at_rest(elements) * robot.timestep**2 + 0.5 * elements.damping * robot.timestep

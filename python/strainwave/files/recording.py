@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -444,7 +444,7 @@ class _Fault(NamedTuple):
     reason: str
 
 
-def _of_frame(frame: pandas.DataFrame, units: Mapping[str, str] | None) -> tuple[dict[str, Array], Mapping[str, str]]:
+def _of_frame(frame: Any, units: Mapping[str, str] | None) -> tuple[dict[str, Array], Mapping[str, str]]:
     """Return the columns of a table of pandas, and their units."""
     labels = [label_of(name) if isinstance(name, str) else Label(name, name, None) for name in frame.columns]
     if units is None:
