@@ -22,6 +22,7 @@ from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.robot import Element, Robot, child, gears_of_joints, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed
+from strainwave.tuning.compensate import MAX_MEMBERS
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
 
@@ -99,7 +100,7 @@ def mjcf(
         raise ValueError(f"draws = {draws} are made for one joint; {listed(exports)} have gears")
     if draws:
         ((own, elements, _),) = exports.values()
-        files["randomisation.json"] = _randomisation(own, elements, arguments.whole("draws", draws, 2), seed, name)
+        files["randomisation.json"] = _randomisation(own, elements, arguments.whole("draws", draws, 2, MAX_MEMBERS), seed, name)
     losses, left_out, remarks = _of_all(exports)
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
     names = listed(dict.fromkeys(each.name for each, _, _ in exports.values()))
