@@ -199,9 +199,7 @@ def test_a_speed_of_rounding_neither_bends_bristles_nor_winds_up_the_gear(
     part: str, model: Any, data: st.DataObject, speed: float, angle: float
 ) -> None:
     drive = changed(part, data.draw(laws(part, model)))
-    at_rest, moving = (
-        beginning_numbers(drive, None, {"output_angle": angle, "output_speed": each}, STILL) for each in (0.0, speed)
-    )
+    at_rest, moving = (beginning_numbers(drive, {"output_angle": angle, "output_speed": each}, STILL) for each in (0.0, speed))
     np.testing.assert_allclose(moving, at_rest, rtol=1e-9, atol=1e-9)
 
 
