@@ -7,6 +7,7 @@ import sys
 import warnings
 from contextlib import redirect_stdout
 from io import StringIO, TextIOWrapper
+from pathlib import Path
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -29,7 +30,7 @@ from strainwave.commands.predict import predict
 from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
-from strainwave.messages import one_line, with_options
+from strainwave.messages import one_line, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError
 
 # Verbs, and rooms of several verbs, under the headings of the help.
@@ -170,6 +171,9 @@ def _misuse(error: Any) -> str:
     command, wrong = "strainwave" if error.ctx is None else error.ctx.command_path, error.format_message().rstrip(".")
     if wrong.startswith("Missing") and error.ctx is not None:
         wrong += f" of {' '.join([command, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
+        gear = str(error.ctx.params.get("gear"))
+        if Path(gear).suffix != ".toml" and Path(gear).exists():
+            wrong = f"{unquoted(gear)} is a file, where the gear is asked for: name it first (strainwave list gears)"
     return f"{wrong}; see {command} --help"
 
 

@@ -49,7 +49,7 @@ def label_of(text: str) -> Label:
 
 
 def labels_of(texts: Sequence[str]) -> list[Label]:
-    """The labels of a header; numbers in brackets behind a name that comes again are indices, not units.
+    """The labels of a header; numbers in brackets are indices, not units, but for a 1 behind a blank that comes once.
 
     >>> [label.unit for label in labels_of(["t [s]", "q[0]", "q[1]", "slip [1]"])]
     ['s', None, None, '1']
@@ -58,7 +58,7 @@ def labels_of(texts: Sequence[str]) -> list[Label]:
     again = Counter(label.name for label in labels if label.unit is not None and _is_index(label.unit))
     return [
         Label(label.text, label.text, None)
-        if label.unit is not None and _is_index(label.unit) and again[label.name] > 1
+        if label.unit is not None and _is_index(label.unit) and (again[label.name] > 1 or not label.text.endswith(" [1]"))
         else label
         for label in labels
     ]

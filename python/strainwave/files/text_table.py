@@ -244,7 +244,7 @@ class CsvTable:
     def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds since the first; and what was left out.
 
-        A last row that ends too early is left out: its writer was stopped.
+        A last row that ends too early is left out: its writer was stopped. So is one without a number, as of units or a sum.
         """
         import pyarrow
 
@@ -266,18 +266,29 @@ class CsvTable:
         return f"its header is line {self.above + 1}"
 
     def _without_torn_end(self) -> tuple[CsvTable, list[str]]:
-        """Return this table without its last row, if only that has fewer cells than the header."""
+        """Return this table without its last row, if only that has fewer cells than the header, or no number."""
         text = self.body.tobytes().rstrip(b"\n")
         start = text.rfind(b"\n") + 1
         before = text[text.rfind(b"\n", 0, max(start - 1, 0)) + 1 : max(start - 1, 0)]
         line = self.line + text.count(b"\n")
         torn = text[start:].decode()
+        if before and self._has_no_number(self._cells(line, torn)):
+            return replace(self, body=self.body[:start]), [f"its last row, line {line}, has no number: {quoted(torn)}"]
         if not before or len(self._cells(line, torn)) >= len(self.labels) > 1:
             return self, []
         if len(self._cells(line - 1, before.decode())) != len(self.labels) or len(self.labels) == 1:
             return self, []
         remark = f"its last row, line {line}, ends too early and is left out: {quoted(torn)}"
         return replace(self, body=self.body[:start]), [remark]
+
+    def _has_no_number(self, cells: Sequence[str]) -> bool:
+        """True for the cells of a row that has a text in each column of numbers."""
+        pairs = zip(cells, self.contents, strict=False)
+        measured = [cell.strip(" \t") for cell, content in pairs if content == "numbers"]
+        is_text = [
+            not NUMBER.fullmatch(cell) and cell not in NOTHING and cell.casefold() not in NOT_FINITE for cell in measured
+        ]
+        return len(cells) == len(self.labels) and len(measured) > 1 and all(is_text)
 
     def texts(self) -> Iterator[tuple[int, list[str]]]:
         """Line and cells of each row, as they stand; a row with another number of cells than the header is refused."""

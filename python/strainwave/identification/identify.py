@@ -220,13 +220,6 @@ def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult])
     return replace(gear_set, validation=(*gear_set.validation, own))
 
 
-def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:
-    """Return the checks of one file that `identify` makes of it."""
-    fits = _Fits.of(start, [file])
-    results = (*fits.results.values(), *fits.together)
-    return _checks(start, results, combine(results))
-
-
 def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:
     """Return the checks of all files, and of what they determine against the start set and each other."""
     failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already

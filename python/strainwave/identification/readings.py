@@ -224,6 +224,8 @@ def _read_so(way: _Way, ways: Sequence[_Way], source: MeasurementFile, usual: Us
     read = file if way.is_usual else recognise(source, file.mapping.updated(FileMapping(**effort.given)))
     tried = "; ".join(f"{_name_of(each)}: {each.shown}" for each in ways if each.effort is not None)
     taken = f"{effort.column} is read as {_name_of(way)}, as its friction is nearest to that of the start set"
+    if way.reading.answer.label:
+        taken = f"taken as most probable: {_name_of(way)}, with the friction and speed nearest to usual ones"
     remark = one_line(f"{taken}: {tried}; {usual.shown(record)}")
     why = tuple(each for each in read.why if not ("side" in way.reading.answer.given and GIVEN in each))
     return replace(read, question=None, alternatives=(), why=why, remarks=(remark, *read.remarks))

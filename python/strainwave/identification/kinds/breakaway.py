@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.presliding import breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.kinds.at_rest import (
@@ -73,8 +73,8 @@ class Breakaway(AtRest):
         sides = [each for each in ways if each is not None]
         both = _mean(sides)
         off = [abs(ramp.torque) - each.value for ramp in ramps if (each := ways[ramp.torque > 0.0]) is not None]
-        left = rms(np.array(off)) / both.value
-        whole = share_left({"the torque of breakaway": (left, MAX_SHARE_OF_TORQUE)}, name)
+        left = Left(rms(np.array(off)), both.value, "N.m", MAX_SHARE_OF_TORQUE)
+        whole = error_left({"the torque of breakaway": left}, name)
         few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
         estimates = only_if_explained((estimate_of(both, "gear.friction_input.breakaway", "", uncertain, few),), whole)
         remarks, (law, after) = [*file.remarks, *_remarks(found, len(ramps))], (known.sliding(), known)

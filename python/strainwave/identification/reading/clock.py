@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
+from strainwave.identification.reading.times import restarts
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
@@ -24,7 +25,6 @@ Rows = NDArray[np.int64]
 MAX_SCATTER = 0.2  # of a step: root mean square of stamps about a regular clock, above which ticks could not be counted
 MAX_SCATTER_OF_EXACT = 1e-3  # of a step: such stamps are taken as they are
 REPEAT_WINDOW = 0.5  # of a step: a row with the values of the row before it and a stamp so near is a repetition
-MIN_STEPS_BACK = 10.0  # of a clock that has begun anew
 MAX_SHARED_STAMPS = 0.05  # of the rows: if more share the stamp of the row before, stamps are coarser than the samples
 MAX_TIME = 1e12  # s of a log
 MAX_TICKS = 1e12  # from the first row to the last
@@ -98,14 +98,14 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array
 
 def _longest_stretch(stamps: Array) -> tuple[Rows, list[str]]:
     """Return the rows of the longest stretch between restarts of the clock, and what was left out."""
-    restarts = np.flatnonzero(np.diff(stamps) < -MIN_STEPS_BACK * _step(stamps)) + 1
-    ends = np.array([0, *restarts, len(stamps)])
+    begins = restarts(stamps)
+    ends = np.array([0, *begins, len(stamps)])
     longest = int(np.argmax(np.diff(ends)))
     rows = np.arange(ends[longest], ends[longest + 1])
-    if not restarts.size:
+    if not begins.size:
         return rows, []
-    places = ", ".join(str(row) for row in restarts[:5]) + (" …" if len(restarts) > 5 else "")
-    of_several = f"{len(restarts) + 1} recordings in one file, of which the longest is taken, rows {rows[0]} to {rows[-1]}"
+    places = ", ".join(str(row) for row in begins[:5]) + (" …" if len(begins) > 5 else "")
+    of_several = f"{len(begins) + 1} recordings in one file, of which the longest is taken, rows {rows[0]} to {rows[-1]}"
     return rows, [f"its time begins anew at row {places}: {of_several}"]
 
 

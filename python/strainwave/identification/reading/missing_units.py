@@ -162,7 +162,7 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
     ]
     raise QuestionError(
         f"column {quoted(column.name)} has no unit, and its steps do not determine it",
-        [*ways, replace(LOG_AT_RATE, label="it counts rows")],
+        [*ways, *[replace(LOG_AT_RATE, label="it counts rows")] * counts_rows],
     )
 
 

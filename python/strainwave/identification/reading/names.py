@@ -23,7 +23,7 @@ UNITS: dict[Quantity, str] = {
 QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "time": (
         "time", "t", "zeit", "zeitstempel", "uhrzeit", "datum", "date", "datetime", "timestamp", "stamp", "temps", "heure",
-        "tiempo", "hora", "tempo", "ora", "clock", "elapsed",
+        "tiempo", "hora", "tempo", "ora", "clock", "elapsed", "ts",
     ),
     "angle": (
         "angle", "position", "positions", "pos", "q", "theta", "th", "phi", "winkel", "lage", "drehwinkel", "stellung",
@@ -74,7 +74,7 @@ OTHERS = (
     "error", "fehler", "err", "status", "count", "index", "limit", "max", "min", "std", "sigma", "gain", "constant",
     "acceleration", "acc", "accel", "ddq", "qdd", "jerk", "mode", "flag", "tool", "gripper", "power",
     "id", "ext", "external", "hat", "gravity", "coriolis", "disturbance", "contact", "model",
-    "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude",
+    "simulated", "predicted", "rne", "ff", "feedforward", "offset", "amplitude", "bus", "supply", "battery", "dclink",
 )  # fmt: skip
 ACCELERATIONS = {*QUANTITIES["vibration"], "acceleration", "acc", "accel", "beschleunigung"}
 STANDARD_GRAVITY = "gn"  # the unit that accelerometers call g, which is a gram elsewhere

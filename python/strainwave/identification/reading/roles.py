@@ -11,6 +11,8 @@ from strainwave.identification.reading.sides import pair
 from strainwave.messages import listed
 from strainwave.questions import Answer, QuestionError
 
+MAX_NAMED = 8  # columns of one list
+
 
 @dataclass(frozen=True)
 class ColumnRoles:
@@ -99,5 +101,6 @@ def columns_for(name: str, columns: Sequence[Column]) -> list[Answer]:
 
 
 def names_of(columns: Sequence[Column]) -> str:
-    """Return the names of columns in one list."""
-    return listed(column.name for column in columns)
+    """Return the names of columns in one list, of many the first ones and their number."""
+    names = [column.name for column in columns]
+    return listed(names) if len(names) <= MAX_NAMED else f"{listed(names[:MAX_NAMED])} and {len(names) - MAX_NAMED} more"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -22,7 +22,7 @@ from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, Quantity, is_of_joint, meaning
 from strainwave.identification.reading.slopes import is_slope
-from strainwave.identification.reading.times import merged, seconds_of, with_one_time
+from strainwave.identification.reading.times import merged, runs_in, seconds_of, with_one_time
 from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
@@ -31,6 +31,7 @@ SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "a
 MAX_PARTS = 20  # files of one recording
 SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
+TEXTS = {".csv", ".txt", ".tsv", ".log"}  # that a recorder may go on writing when it is started again
 DUMPED = "data.log"  # with a count and a stamp in front of each row
 BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
 
@@ -57,7 +58,7 @@ class MeasurementFile:
     def runs(self) -> list[MeasurementFile]:
         """The recordings in it, each as a file; itself if it has one, or cannot be read."""
         try:
-            tables = self.raw.runs if isinstance(self.raw, ArrayTable) else ()
+            tables: Sequence[OpenTable] = self.raw.runs if isinstance(self.raw, ArrayTable) else runs_in(self.timed)
         except (ValueError, OSError):
             return [self]
         named = ((self.path.with_name(f"{self.path.name}({number})"), each) for number, each in enumerate(tables, start=1))
@@ -180,8 +181,8 @@ def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
 
 
 def _with_runs(file: MeasurementFile) -> list[MeasurementFile]:
-    """Return the recordings in a file of a format that can contain several."""
-    return file.runs if file.path.suffix.lower() in FILES_OF_RUNS else [file]
+    """Return the recordings in a file: in an array of them, or in a text whose time begins anew."""
+    return file.runs if not file.parts and file.path.suffix.lower() in FILES_OF_RUNS | TEXTS else [file]
 
 
 def _of_kind(kind: str, given: Measurement) -> MeasurementFile:
@@ -235,9 +236,9 @@ def files_of_same_recording(path: Path) -> list[Path]:
 
 
 def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
-    """True if columns are a time, and channels of which each names this quantity, or none."""
+    """True if columns are channels of which each names this quantity, or beside a time none."""
     named = {(found := meaning(label)) and found.quantity for label in labels}
-    return quantity is not None and "time" in named and named <= {"time", quantity, None}
+    return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
 
 
 def _named(path: Path) -> Path:
@@ -271,15 +272,16 @@ def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
     grids = [Grid(part.time, part.columns) for part in read if part.time is not None]
     file = one_line(listed(part.path.name for part in parts))
     if grids and len(grids) == len([part for part in read if part.series]):
-        return grid_table(file, "", merged(grids), {name: unit for part in read for name, unit in part.units.items()})
+        return grid_table(file, "", merged(grids), {name: unit for part in read for name, unit in part.stated.items()})
     rows = [len(part.series[0]) for part in read]
     if len(set(rows)) > 1:
         counts = listed(f"{part.path.name} has {count}" for part, count in zip(parts, rows, strict=True))
         raise ValueError(f"{file}: files of one recording need the same number of rows; {counts}")
-    columns = dict[str, Array]()
+    columns, units = dict[str, Array](), dict[str, str]()
     for part in read:
         columns |= part.columns if part.time is None else {"time": part.time, **part.columns}
-    return ArrayTable(file, "", [Label(name, name, None) for name in columns], list(columns.values()))
+        units |= part.stated
+    return ArrayTable(file, "", [Label(name, name, units.get(name)) for name in columns], list(columns.values()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -290,7 +292,7 @@ class _Part:
     series: list[Array]
     time: Array | None
     names: Sequence[str] = ()
-    units: Mapping[str, str] = field(default_factory=dict)
+    units: Sequence[str | None] = ()
 
     @staticmethod
     def of(file: MeasurementFile) -> _Part:
@@ -300,25 +302,34 @@ class _Part:
         series = list(numbers.values())
         if not nameless(file.raw):
             return _Part._named(name, table, series)
+        units = [label.unit for label in table.labels]
         if QUANTITY_OF.get(name.casefold()) == "time":
-            return _Part("time", series[:1], None)
+            return _Part("time", series[:1], None, (), units[:1])
         if file.path.name == DUMPED and len(series) > 2:
             return _Part(name, series[2:], series[1])
-        time = series[0] if len(series) > 1 and rises_evenly(series[0]) else None
-        return _Part(name, series if time is None else series[1:], time)
+        if len(series) > 1 and rises_evenly(series[0]):
+            return _Part(name, series[1:], series[0], (), units[1:])
+        return _Part(name, series, None, (), units)
 
     @staticmethod
     def _named(name: str, table: OpenTable, series: list[Array]) -> _Part:
         """Return a file whose columns have names: each begins with the quantity if it does not name it."""
         meanings = [meaning(label) for label in table.labels]
-        at = next(place for place, found in enumerate(meanings) if found and found.quantity == "time")
+        at = next((place for place, found in enumerate(meanings) if found and found.quantity == "time"), None)
         names = [label.name if found else f"{name}_{label.name}" for label, found in zip(table.labels, meanings, strict=True)]
-        units = {each: label.unit for each, label in zip(names, table.labels, strict=True) if label.unit}
+        units = [label.unit for label in table.labels]
+        if at is None or len(series) == 1:
+            return _Part(name, series, None, names, units)
         time = seconds_of(series[at], table.labels[at])
-        return _Part(name, series[:at] + series[at + 1 :], time, names[:at] + names[at + 1 :], units)
+        return _Part(name, series[:at] + series[at + 1 :], time, names[:at] + names[at + 1 :], units[:at] + units[at + 1 :])
 
     @property
     def columns(self) -> dict[str, Array]:
         if self.names or len(self.series) == 1:
             return dict(zip(self.names or [self.name], self.series, strict=True))
         return {f"{self.name}_{number}": values for number, values in enumerate(self.series, start=1)}
+
+    @property
+    def stated(self) -> dict[str, str]:
+        """The units that its header states, by the names of the columns."""
+        return {name: unit for name, unit in zip(self.columns, self.units, strict=False) if unit}

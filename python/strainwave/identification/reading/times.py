@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,10 @@ PARTS = {
 }  # s
 FILE_TIMES = (1e17, 1e18)  # of Windows, in tenths of a microsecond since 1601: no log has such times in another unit
 MIN_PAIRS = 2  # of a time and a channel
+MIN_STEPS_BACK = 10.0  # of a clock that has begun anew
+MIN_ROWS_OF_RUN = 20  # of each recording in a file: shorter ones are hiccups of the clock
+COUNTERS = (2.0**16, 2.0**31, 2.0**32, 86_400.0, 86_400e3)  # after which a counter of a clock, or a time of day, begins anew
+MAX_STEPS_OF_COUNTER = 3.0  # from the last count to the first one
 
 
 def with_one_time(table: OpenTable) -> OpenTable:
@@ -148,6 +153,96 @@ def _with_own_times(table: OpenTable) -> OpenTable:
             return table
         grids.append(Grid(time, {name: values}))
     return grid_table(table.file, table.title, merged(grids), channels, [*remarks, *table.left_out])
+
+
+@dataclass(frozen=True, eq=False)
+class TableRows:
+    """Some rows of a table, which are a recording of their own.
+
+    Args:
+        table: of all rows
+        labels: of its columns
+        rows: of the recording
+    """
+
+    table: OpenTable
+    labels: Sequence[Label]
+    rows: slice
+
+    @property
+    def file(self) -> str:
+        return self.table.file
+
+    @property
+    def title(self) -> str:
+        return self.table.title
+
+    @property
+    def left_out(self) -> Sequence[str]:
+        return self.table.left_out
+
+    @property
+    def contents(self) -> Sequence[Content]:
+        return self.table.contents
+
+    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
+        """Return the columns wanted, all of them numbers."""
+        return {name: values[self.rows] for name, values in self.table.numbers(sources).items()}
+
+    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
+        """Return the columns wanted, nan in empty cells; and what was left out."""
+        numbers, remarks = self.table.measured(sources)
+        return {name: values[self.rows] for name, values in numbers.items()}, remarks
+
+    def place(self, row: int) -> str:
+        return self.table.place(self.rows.start + row)
+
+
+def runs_in(table: OpenTable) -> list[TableRows]:
+    """Return the recordings in a table whose time begins anew; none if it is one recording.
+
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from strainwave.files.tables import open_table
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     stamps = [0.01 * (row % 50) for row in range(100)]
+    ...     _ = Path(folder, "log.csv").write_text("time,q\\n" + "".join(f"{stamp},0.1\\n" for stamp in stamps))
+    ...     [run.rows for run in runs_in(open_table(Path(folder, "log.csv")))]
+    [slice(0, 50, None), slice(50, 100, None)]
+    """
+    named = (place for place, label in enumerate(table.labels) if (found := meaning(label)) and found.quantity == "time")
+    place = next(named, None)
+    if place is None or table.contents[place] == "other" or isinstance(table, GridTable):
+        return []
+    numbers, _ = table.measured([ColumnSource(place, "time", "time", "1")])
+    stamps = numbers["time"]
+    ends = [0, *restarts(stamps), len(stamps)]
+    if len(ends) == 2 or min(np.diff(ends)) < MIN_ROWS_OF_RUN or run_on(stamps)[1]:
+        return []
+    return [TableRows(table, table.labels, slice(int(first), int(end))) for first, end in pairwise(ends)]
+
+
+def restarts(stamps: Array) -> NDArray[np.intp]:
+    """Return the rows at which a clock begins anew."""
+    steps = np.diff(stamps)
+    forward = steps[steps > 0.0]
+    return np.flatnonzero(steps < -MIN_STEPS_BACK * float(np.median(forward))) + 1 if forward.size else np.zeros(0, np.intp)
+
+
+def run_on(stamps: Array) -> tuple[Array, float]:
+    """Return the stamps of a counter that begins anew as they run on, and after how much it does; others as they are, and 0.
+
+    >>> run_on(np.array([65530.0, 65533.0, 0.0, 3.0]))
+    (array([65530., 65533., 65536., 65539.]), 65536.0)
+    """
+    steps = np.diff(stamps)
+    back, forward = steps[steps < 0.0], steps[steps > 0.0]
+    if not back.size or not forward.size:
+        return stamps, 0.0
+    for period in COUNTERS:
+        if (period + back > 0.0).all() and (period + back <= MAX_STEPS_OF_COUNTER * np.median(forward)).all():
+            return stamps + period * np.concatenate([[0.0], np.cumsum(steps < 0.0)]), period
+    return stamps, 0.0
 
 
 def merged(grids: Sequence[Grid]) -> list[Grid]:

@@ -19,6 +19,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
 from strainwave.identification.reading.names import UNITS
 from strainwave.identification.reading.recorders import with_registers
+from strainwave.identification.reading.times import run_on
 from strainwave.messages import as_option, listed, one_line, quoted
 from strainwave.questions import Answer, QuestionError
 
@@ -51,7 +52,9 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         raise QuestionError(one_line(f"no column has a name that is known: {there}"), unnamed.answers(table, [], mapping.kind))
     sources = [ColumnSource(each.position, each.name, str(each.position), each.unit or each.channel.unit) for each in columns]
     numbers, left_out = table.measured(sources)
-    known, remarks = _with_units(table, [replace(each, raw=numbers[str(each.position)]) for each in columns], mapping)
+    read = [replace(each, raw=numbers[str(each.position)]) for each in columns]
+    read, run_over = _with_time_that_runs_on(read)
+    known, remarks = _with_units(table, read, mapping)
     known, of_recorder = with_registers(known)
     known, counted = with_counts(known)
     own = [_with_side(column, mapping) for column in known if column.own]
@@ -63,7 +66,7 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
     except ValueError as error:
         raise ValueError(one_line(f"{table.file} {error}")) from None
     assumed = ", ".join(f"{c.name} in {' '.join(filter(None, units[c.position][:2]))}" for c in own if c.unit is None)
-    remarks = [*left_out, *remarks, *of_recorder, *counted]
+    remarks = [*left_out, *remarks, *run_over, *of_recorder, *counted]
     if assumed:
         column = next(c for c in own if c.unit is None)
         other = next(unit for unit in OTHER_UNITS[column.channel.quantity] if unit != units[column.position].unit)
@@ -77,6 +80,17 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
+
+
+def _with_time_that_runs_on(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
+    """Return the columns, with the time of a counter that begins anew as it runs on; and a remark."""
+    found, remarks = list(columns), []
+    for place, column in enumerate(columns):
+        if column.channel.quantity == "time":
+            stamps, period = run_on(column.raw)
+            found[place] = replace(column, raw=stamps)
+            remarks += [f"{column.name} begins anew after {period:g}: it is taken to run on"] if period else []
+    return found, remarks
 
 
 def _with_side(column: Column, mapping: FileMapping) -> Column:

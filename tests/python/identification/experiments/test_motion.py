@@ -72,3 +72,17 @@ def test_no_series_at_all_is_filtered_to_none() -> None:
     time = np.arange(0.0, 10.0, 0.004)
     motion = motion_of(time, np.sin(time), None, 0.1)
     assert motion.filtered(np.zeros((0, len(motion.time)))).shape == (0, len(motion.rows))
+
+
+def test_noise_does_not_hide_the_acceleration_that_no_gravity_makes_up() -> None:
+    """Nearly one sine: the angle makes up 99.7 % of the acceleration, and inertia rests on what is left."""
+    time = np.arange(0.0, 40.0, 0.002)
+    waves = [(0.6, 2.9), (0.25, 2.6)]
+    angle = sum(size * np.sin(w * time) for size, w in waves)
+    torque = sum(-size * w**2 * np.sin(w * time) for size, w in waves) + 10.0 * np.asarray(angle)
+    motion = motion_of(time, angle + 1e-5 * np.random.default_rng(0).standard_normal(len(time)))
+    rows = motion.known
+    columns = np.stack([motion.acceleration, motion.angle], axis=1)[rows]
+    (inertia, gravity), *_ = np.linalg.lstsq(columns, torque[rows], rcond=None)
+    assert motion.cutoff < 30.0  # the sampling rate allows 50 Hz
+    assert (inertia, gravity) == pytest.approx((1.0, 10.0), rel=0.03)

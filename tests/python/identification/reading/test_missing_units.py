@@ -104,3 +104,10 @@ def test_time_in_steps_of_one_is_asked_for(tmp_path: Path) -> None:
         recognise(path)
     assert options_of(asked.value) == ["--unit t=ms", "--unit t=us", "--unit t=s", "--constant rate=NUMBER"]
     assert recognise(path, FileMapping(units={"time": "ms"})).recording.time[-1] == pytest.approx(1.999)
+
+
+def test_rpm_beside_revolutions_are_not_degrees_per_second_beside_radians(tmp_path: Path) -> None:
+    """A speed in rpm is 1.047 times one in °/s with the angle in radians: near enough for a filtered speed, but not exact."""
+    turns = ANGLE / (2.0 * np.pi)
+    found = log(tmp_path, "joint_position,joint_velocity,joint_torque", turns, 60.0 * SPEED / (2.0 * np.pi), SPEED)
+    assert (found.units["output_angle"], found.units["output_speed"]) == ("rev", "rpm")

@@ -434,3 +434,72 @@ def test_the_unit_in_the_name_of_a_column_that_a_person_names(tmp_path: Path) ->
     found = recognise(path, FileMapping(columns={"input_angle": "drive_deg", "output_angle": "table_deg"}))
     assert found.recording["output_angle"] == pytest.approx(ANGLE, abs=1e-7)
     assert found.units["input_angle"] == found.units["output_angle"] == "deg"
+
+
+# ---- Several recordings in one file, and clocks ----------------------------------------------------------------------
+
+
+def test_each_recording_of_a_text_whose_time_begins_anew_is_read(tmp_path: Path) -> None:
+    time, angle, torque = np.tile(TIME, 2), np.concatenate([ANGLE, 0.5 * ANGLE]), np.concatenate([TORQUE, 0.5 * TORQUE])
+    path = written(tmp_path / "log.csv", "time [s],joint_pos [rad],joint_torque [Nm]\n", [time, angle, torque])
+    first, second = measurement_files([path]).files
+    assert [first.path.name, second.path.name] == ["log.csv(1)", "log.csv(2)"]
+    assert recognise(second).recording["output_angle"] == pytest.approx(0.5 * ANGLE, abs=1e-8)
+    assert recognise(first).recording["joint_torque"] == pytest.approx(TORQUE, abs=1e-6)
+
+
+def test_a_counter_of_16_bits_runs_on(tmp_path: Path) -> None:
+    stamps = (63_000.0 + np.round(1e3 * TIME)) % 65_536.0
+    path = written(tmp_path / "log.csv", "time [ms],joint_pos [rad],joint_torque [Nm]\n", [stamps, ANGLE, TORQUE])
+    (file,) = measurement_files([path]).files
+    found = recognise(file)
+    assert found.recording.time - found.recording.time[0] == pytest.approx(TIME, abs=1e-6)
+    assert "time begins anew after 65536: it is taken to run on" in found.remarks
+
+
+def test_files_of_one_quantity_each_keep_the_units_of_their_headers(tmp_path: Path) -> None:
+    for name, header, values in (
+        ("t", "t [ms]", 1e3 * TIME),
+        ("q", "q [deg]", np.degrees(ANGLE)),
+        ("tau", "tau [mNm]", TORQUE),
+    ):
+        written(tmp_path / f"{name}_run.csv", header + "\n", [values])
+    (file,) = measurement_files([tmp_path]).files
+    found = recognise(file)
+    assert found.recording["output_angle"] == pytest.approx(ANGLE, abs=1e-8)
+    assert found.recording["joint_torque"] == pytest.approx(1e-3 * TORQUE, abs=1e-8)
+    assert found.recording.time[-1] == pytest.approx(TIME[-1])
+
+
+def test_a_row_of_units_at_the_end_is_left_out(tmp_path: Path) -> None:
+    path = written(tmp_path / "log.csv", "time,joint_pos [rad],joint_torque [Nm]\n", [TIME, ANGLE, TORQUE])
+    path.write_text(path.read_text() + '"s","rad","Nm"\n')
+    found = recognise(path)
+    assert len(found.recording) == len(TIME)
+    assert any(f"line {len(TIME) + 2}, has no number" in remark for remark in found.remarks)
+
+
+def test_one_element_of_a_message_is_read(tmp_path: Path) -> None:
+    names = ",".join(f"/joint_states/{name}[2]" for name in ("position", "velocity", "effort"))
+    found = recognise(written(tmp_path / "bag.csv", f"__time,{names}\n", [1.7e9 + TIME, ANGLE, SPEED, TORQUE]))
+    assert found.columns["joint_torque"] == "/joint_states/effort[2]"
+
+
+def test_the_current_of_a_bus_is_none_of_the_motor(tmp_path: Path) -> None:
+    path = written(tmp_path / "log.csv", "time,motor_rpm,bus_current_A\n", [TIME, 900.0 * SPEED, np.abs(TORQUE)])
+    with pytest.raises(ValueError, match="which is no measurement that is known"):
+        recognise(path)
+
+
+def test_of_two_angles_that_run_alike_that_of_a_robot_is_the_joint_s(tmp_path: Path) -> None:
+    path = written(tmp_path / "log.csv", "time,theta,q,tau_J\n", [TIME, ANGLE + 1e-4 * TORQUE / 25.0, ANGLE, TORQUE])
+    found = recognise(path)
+    assert (found.columns["reflected_angle"], found.columns["output_angle"]) == ("theta", "q")
+
+
+def test_a_message_of_many_columns_is_short(tmp_path: Path) -> None:
+    names = [f"part{number}_angle" for number in range(40)]
+    path = written(tmp_path / "log.csv", ",".join(names) + "\n", [ANGLE * number for number in range(40)])
+    with pytest.raises(ValueError, match="more") as refused:
+        recognise(path, FileMapping(kind="encoders"))
+    assert len(str(refused.value)) < 1000
