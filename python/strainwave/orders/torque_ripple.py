@@ -320,7 +320,8 @@ def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Reco
 def _remarks(shaft: Moving, found: LineSearch, record: Evenly, top: float) -> list[str]:
     remarks = []
     if shaft.outliers:
-        remarks.append(f"{shaft.outliers} samples lie far outside of the others and do not count")
+        far = "sample lies" if shaft.outliers == 1 else "samples lie"
+        remarks.append(f"{shaft.outliers} {far} far outside of the others; outliers do not count")
     if any("time" in line.rivals for line in found.lines):
         remarks.append(
             "the speed is too constant to separate order lines from time lines (mains, resonances); a second run at another "
