@@ -40,7 +40,7 @@ TYPES = sorted(
 )
 GIVEN = {  # values that a person writes: they print as they are written
     "BearingOrders", "Camera", "Entry", "Factors", "FileMapping", "Masses", "Observation", "Quantity", "Rig", "Scene", "Step",
-    "Value",
+    "Value", "Wave",
 }  # fmt: skip
 OTHERS = {"PredictiveController"}  # a controller, which is called
 

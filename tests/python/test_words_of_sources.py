@@ -74,3 +74,13 @@ def helps(words: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
 @pytest.mark.parametrize("words", helps(), ids=lambda words: " ".join(words) or "strainwave")
 def test_helps_have_no_code(words: tuple[str, ...]) -> None:
     assert CODE.findall(CliRunner().invoke(app, [*words, "--help"]).stdout) == []
+
+
+def test_a_gear_has_the_whole_name_of_its_file(tmp_path: Path) -> None:
+    path = tmp_path / f"{'friction of the third joint of the second arm, measured cold and without load ' * 2}.csv"
+    path.write_text(
+        "speed [rad/s],torque [N.m]\n" + "\n".join(f"{w},{0.05 + 3e-4 * w:.6f}" for w in (2, 5, 10, 20, 50, 100, 200))
+    )
+    gear_set = sw.identify("hfuc-25-100", [path]).gear_set
+    assert gear_set.name == f"gear of {path.stem}"
+    assert f"Identified from {path.name}, starting from" in gear_set.note

@@ -185,7 +185,8 @@ def _of_log(file: Recognised, known: GearSoFar, as_read: Effort) -> Record:
 
 def _of_table(file: Recognised, gear: Gear, as_read: Effort) -> Record:
     """Return what a table of friction shows at its medium speed."""
-    effort = np.abs(file.recording[next(name for name, each in file.columns.items() if each == as_read.column)])
+    channel = next(name for name, column in file.columns.items() if column == as_read.column)
+    effort = np.abs(file.recording.values(channel, as_read.unit))
     speed = np.abs(file.recording["speed"]) * (abs(gear.kinematics.ratio) if as_read.side == "output" else 1.0)
     effective, fastest = float(np.sqrt(np.mean(effort**2))), float(max(speed.max(), REST_SPEED))
     return Record(float(np.median(effort)), effective, float(np.median(speed)), fastest)

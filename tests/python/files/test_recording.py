@@ -77,7 +77,7 @@ def test_columns_are_read_in_their_own_and_in_other_units() -> None:
     assert len(RUN) == 4
     assert "speed" in RUN
     assert "twist" not in RUN
-    assert repr(RUN) == '<Recording "a run": 4 samples from 0 s to 1.5 s; time [s], speed [rpm], torque [N.m]>'
+    assert repr(RUN) == '<Recording: "a run": 4 samples from 0 s to 1.5 s; time [s], speed [rpm], torque [N.m]>'
 
 
 def test_time_is_in_seconds_whatever_its_unit() -> None:

@@ -89,7 +89,7 @@ def error_left(channels: Mapping[str, Left], source: str) -> Check:
         source: name of the file
     """
     left = [
-        f"{name.replace('_', ' ')} {quantity(each.error, each.unit)} of {quantity(each.size, each.unit)}"
+        f"{name.replace('_', ' ')} {quantity(each.error, each.unit)}, of a signal of {quantity(each.size, each.unit)}"
         for name, each in channels.items()
         if each.over_limit > 1.0
     ]

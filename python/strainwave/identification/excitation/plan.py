@@ -123,8 +123,8 @@ class ExperimentPlan(Pictured):
             alone = f"; determines by itself {listed(map(str, step.determines))}" if step.determines else ""
             yield Row(f"measurement {number}", f"{step.repeats} x {step.words}{alone}")
         for each in self.expectations:
-            before = "not known" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
-            yield Row(each.path, each.value, each.unit, each.after, f"before {before}")
+            before = "unknown" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
+            yield Row(each.path, each.value, each.unit, each.after, f"was {before}")
 
     def _remarks(self) -> Iterator[str]:
         yield from (f"{each.path}: {each.why}" for each in self.expectations if each.why)

@@ -36,7 +36,7 @@ from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_m
 from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -56,6 +56,7 @@ from strainwave.orders.two_encoders import transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 
+SLIDING = 4.0  # times the speed about which the sign of friction turns over: its mean over both senses is 0.1 % off from there
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
@@ -155,11 +156,12 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
 def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
     """Return the check of the shape of what a model leaves of a log over angles and speed, and a remark."""
     moved = moving(log)
-    angle, speed = log.motion.angle[moved], log.motion.speed[moved]
+    slides = np.abs(log.motion.speed[moved]) > SLIDING * turnover_speed(log.motion.speed)
+    angle, speed = log.motion.angle[moved][slides], log.motion.speed[moved][slides]
     abscissae = {"the angle of the output": angle / ratio, "the speed": speed}
     if np.ptp(angle) > 2.0 * np.pi:
         abscissae["the turn of the input"] = np.mod(angle, 2.0 * np.pi)
-    residual = predicted[log.effort] - predicted["modelled"]
+    residual = (predicted[log.effort] - predicted["modelled"])[slides]
     return judged_shape(residual, abscissae, held_out.zero, held_out.unit, source)
 
 

@@ -213,7 +213,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole, order = explained(best.fit, name), np.argsort(experiment.speed, kind="stable")
     left, varies = best.fit.residuals[0][order], float(np.std(experiment.torque))
-    shaped = judged_shape(left, {"the speed": np.arange(len(left))}, varies, "N.m", name, ordered=True)
+    shaped = judged_shape(left, {"the speed": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
     if any(each.why for each in estimates) and not whole.failed:

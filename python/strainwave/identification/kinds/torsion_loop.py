@@ -120,7 +120,7 @@ class Torsion(Kind):
         whole = explained(best.fit, name)
         shared, left = _shared(best, gear, loop, friction_measured), best.fit.residuals[0]
         varies = float(np.std(best.fit.experiment.measured))
-        shaped = judged_shape(left, {"the loop": np.arange(len(left))}, varies, "N.m", name, ordered=True)
+        shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
         if not whole.failed:

@@ -150,11 +150,11 @@ def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionEr
     for answer in question.answers:
         read = _recognised(source, given.updated(FileMapping(**answer.given)))
         ways += [answer, *(each.after(answer) for each in read.alternatives)]
-    first, found = ways[0], _recognised(source, given.updated(FileMapping(**ways[0].given)))
-    other = next(each for each in ways if each.given["side"] != found.side)
-    assumed = f"no name or number determines the side: {found.side} is taken; otherwise add --side {other.given['side']}"
+    first, usual = ways[0], _recognised(source, given.updated(FileMapping(**ways[0].given)))
+    other = next(each for each in ways if each.given["side"] != usual.side)
+    assumed = f"no name or number determines the side: {usual.side} is taken; otherwise add --side {other.given['side']}"
     ways = [each for each in ways if each is not first]
-    return replace(found, alternatives=tuple(ways), question=question, remarks=(assumed, *found.remarks))
+    return replace(usual, alternatives=tuple(ways), question=question, remarks=(assumed, *usual.remarks))
 
 
 def _with_answers_that_work(source: MeasurementFile, given: FileMapping, question: QuestionError) -> QuestionError:
@@ -205,26 +205,63 @@ def _ways_on(source: MeasurementFile, given: FileMapping, answer: Answer, questi
 def _in_words(file: Recognised) -> str:
     """Return the kind of a file, and how large its motions and efforts are."""
     names = [name for name in file.columns if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST]
-    found = file.recording
-    sizes = [f"{name} to {np.abs(found[name]).max():.3g} {found.unit(name)}" for name in names if name in found]
+    recording = file.recording
+    sizes = [f"{name} to {np.abs(recording[name]).max():.3g} {recording.unit(name)}" for name in names if name in recording]
     return f"{kind_named(file.kind).title}; {listed(sizes)}"
 
 
 def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
-    table, remarks, stated = source.table, list[str](), given
-    if source.parts and source.run is None:
-        remarks = [f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}"]
-    given, singles = _with_single_numbers(table, given)
-    given, by_joint = _with_joint(source, given)
+    """Return a file as it is read; raises as `recognise`."""
+    table, stated = source.table, given
+    given, of_file = _with_file(source, given)
     _check_named_effort(source, given)
     columns, decided = chosen(table, given)
     columns, of_values = read(table, columns, given)
-    remarks += [*singles, *by_joint]
-    if given.joint is not None and not any(column.which for column in columns):
-        remarks.append(f"its columns name no joint: they are taken for those of joint {given.joint}")
     given, by_name = _with_speed_of_name(columns, given, source.path)
+    roles = _roles_or_question(table, columns, given)
+    neighbours, regressors = _beside(columns, roles.kind)
+    used = {**roles.columns, **neighbours, **regressors}
+    series = {name: column.si * (given.sign.get(name, 1) if column.own else 1) for name, column in used.items()}
+    remarks = [*of_file, *_of_joint(columns, given), *decided, *of_values, *roles.remarks, *_unwrap(table, series, used)]
     try:
-        found = _roles([column for column in columns if column.own], given)
+        series, in_time, began = _in_time(series, roles.columns, roles.kind, given)
+    except QuestionError:
+        raise
+    except ValueError as error:
+        raise ValueError(one_line(f"{table.file}: {error}")) from None
+    unused = _unused(table, list(used.values()))
+    return Recognised(
+        source.path,
+        roles.kind,
+        columns={name: column.name for name, column in roles.columns.items()},
+        units={name: column.unit or "1" for name, column in roles.columns.items()},
+        side=roles.side,
+        why=(*roles.why, *by_name),
+        remarks=(*remarks, *in_time, *_of_unused(unused.values())),
+        constants=dict(given.constants),
+        recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
+        neighbours={column.which: name for name, column in neighbours.items()},
+        regressors=tuple(regressors),
+        joint=_joint_of(roles.columns, source.path),
+        texts=tuple(name for place, name in unused.items() if table.contents[place] == "other"),
+        unnamed=tuple(unnamed.measured_columns(table, [column.position for column in columns])),
+        began=began,
+        mapping=stated,
+        alternatives=_other_units(columns, roles.columns),
+        is_of_robot=any(column.robot for column in roles.columns.values()),
+        units_given=tuple(name for name, each in roles.columns.items() if each.sure and each.unit and not each.label.unit),
+        units_assumed=tuple(name for name, each in roles.columns.items() if not each.sure),
+    )
+
+
+def _roles_or_question(table: OpenTable, columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
+    """Return the kind of a file, and the channel of each column.
+
+    Raises:
+        QuestionError: several are possible, or none; then it is asked which of the columns without a known name is one
+    """
+    try:
+        return _roles([column for column in columns if column.own], given)
     except QuestionError as question:
         if question.answers:
             raise
@@ -233,44 +270,16 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
             why = "it is a frequency response, which is not read: give the record in time from which it was computed"
             raise QuestionError(f"{why}{left}") from None
         raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
+
+
+def _beside(columns: Sequence[Column], kind: str) -> tuple[dict[str, Column], dict[str, Column]]:
+    """Return the angles of other joints that move beside that of a log, and the torques of which unknown shares act."""
     neighbours = {
         f"angle_of_joint_{column.which}": column
         for column in columns
-        if column.neighbour and found.kind == "log" and np.ptp(column.si) > MIN_MOTION
+        if column.neighbour and kind == "log" and np.ptp(column.si) > MIN_MOTION
     }
-    regressors = {f"regressor {column.name}": column for column in columns if column.regressor}
-    used = {**found.columns, **neighbours, **regressors}
-    series = {name: column.si * (given.sign.get(name, 1) if column.own else 1) for name, column in used.items()}
-    remarks += [*decided, *of_values, *found.remarks, *_unwrap(table, series, used)]
-    try:
-        series, in_time, began = _in_time(series, found.columns, found.kind, given)
-    except QuestionError:
-        raise
-    except ValueError as error:
-        raise ValueError(one_line(f"{table.file}: {error}")) from None
-    unused = _unused(table, list(used.values()))
-    return Recognised(
-        source.path,
-        found.kind,
-        columns={name: column.name for name, column in found.columns.items()},
-        units={name: column.unit or "1" for name, column in found.columns.items()},
-        side=found.side,
-        why=(*found.why, *by_name),
-        remarks=(*remarks, *in_time, *_of_unused(unused.values())),
-        constants=dict(given.constants),
-        recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
-        neighbours={column.which: name for name, column in neighbours.items()},
-        regressors=tuple(regressors),
-        joint=_joint_of(found.columns, source.path),
-        texts=tuple(name for place, name in unused.items() if table.contents[place] == "other"),
-        unnamed=tuple(unnamed.measured_columns(table, [column.position for column in columns])),
-        began=began,
-        mapping=stated,
-        alternatives=_other_units(columns, found.columns),
-        is_of_robot=any(column.robot for column in found.columns.values()),
-        units_given=tuple(name for name, each in found.columns.items() if each.sure and each.unit and not each.label.unit),
-        units_assumed=tuple(name for name, each in found.columns.items() if not each.sure),
-    )
+    return neighbours, {f"regressor {column.name}": column for column in columns if column.regressor}
 
 
 def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
@@ -289,9 +298,9 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
     raise QuestionError(unknown)
 
 
-def _other_units(columns: Sequence[Column], found: Mapping[str, Column]) -> tuple[Answer, ...]:
+def _other_units(columns: Sequence[Column], roles: Mapping[str, Column]) -> tuple[Answer, ...]:
     """Return other units of the channels without one, if their numbers fit them as well."""
-    names = {each.position: each.name if name in REFLECTED else name for name, each in found.items()}
+    names = {each.position: each.name if name in REFLECTED else name for name, each in roles.items()}
     ways = []
     for units in other_units([column for column in columns if column.own and column.position in names]):
         by_name = {names[place]: unit for place, unit in units.items()}
@@ -310,6 +319,24 @@ def _of_unused(names: Collection[str]) -> list[str]:
 
 
 # ---- What a file adds to its mapping ---------------------------------------------------------------------------------
+
+
+def _with_file(source: MeasurementFile, given: FileMapping) -> tuple[FileMapping, list[str]]:
+    """Return the mapping with the rate and the joint that the file determines; and what determines them, and its parts."""
+    given, of_numbers = _with_single_numbers(source.table, given)
+    given, of_joint = _with_joint(source, given)
+    is_of_parts = source.parts and source.run is None
+    parts = [f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}"] * bool(
+        is_of_parts
+    )
+    return given, [*parts, *of_numbers, *of_joint]
+
+
+def _of_joint(columns: Sequence[Column], given: FileMapping) -> list[str]:
+    """Return the remark on a joint that is asked for of columns that name none."""
+    if given.joint is None or any(column.which for column in columns):
+        return []
+    return [f"its columns name no joint: they are taken for those of joint {given.joint}"]
 
 
 def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
