@@ -144,7 +144,8 @@ class ExperimentPlan(Pictured):
         before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in known]
         after = [100.0 * each.after / abs(each.value) for each in known]
         names = [each.path for each in known]
-        return bars_figure("Standard deviation over the value", names, {"before": before, "after": after}, "%")
+        bars = ({"before": before} if np.isfinite(before).any() else {}) | {"after": after}
+        return bars_figure("Standard deviation over the value", names, bars, "%")
 
 
 def plan_experiments(
