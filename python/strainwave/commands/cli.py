@@ -174,6 +174,9 @@ def _misuse(error: Any) -> str:
         gear = str(error.ctx.params.get("gear"))
         if Path(gear).suffix != ".toml" and Path(gear).exists():
             wrong = f"{unquoted(gear)} is a file, where the gear is asked for: name it first (strainwave list gears)"
+    verbs = getattr(error.ctx.command, "commands", {}) if error.ctx is not None and error.ctx.parent is not None else {}
+    if wrong.startswith("No such command"):
+        wrong += f": {command} is followed by {' or '.join(verbs)}" if verbs else ""
     return f"{wrong}; see {command} --help"
 
 

@@ -201,7 +201,9 @@ def _constant(place: str, value: object) -> float:
         except ValueError as error:
             if is_number(number):
                 raise ValueError(f"{place} = {quoted(value)}: {error}") from None
-            raise ValueError(f"{place} = {quoted(value)}: it is no number in {wanted}") from None
+            raise ValueError(
+                f"{place} = {quoted(value)}: it is no number in {wanted}, nor one with its unit, as '0.1 {wanted}'"
+            ) from None
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{place} = {shortened(value)} must be a number in {wanted}, or a text with number and unit")
     return check_constant(place, name, value)
