@@ -198,10 +198,10 @@ STILL = np.array([0.0, 0.0, 0.0, 0.0, 293.15, 0.0])  # inputs
 def test_a_speed_of_rounding_neither_bends_bristles_nor_winds_up_the_gear(
     part: str, model: Any, data: st.DataObject, speed: float, angle: float
 ) -> None:
-    drive = changed(part, data.draw(laws(part, model)))
-    at_rest, moving = (
-        beginning_numbers(drive, None, {"output_angle": angle, "output_speed": each}, STILL) for each in (0.0, speed)
-    )
+    law = data.draw(laws(part, model))
+    assume(getattr(innermost(law), "exponent", 1.0) >= 0.5)  # else a torque per power of the speed is one at this speed, too
+    drive = changed(part, law)
+    at_rest, moving = (beginning_numbers(drive, {"output_angle": angle, "output_speed": each}, STILL) for each in (0.0, speed))
     np.testing.assert_allclose(moving, at_rest, rtol=1e-9, atol=1e-9)
 
 

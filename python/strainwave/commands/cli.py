@@ -40,8 +40,8 @@ HEADINGS: dict[str, dict[str, Any]] = {
     "Faults": {"diagnose": diagnose, "dataset": dataset},
     "Look and check": {"demo": demo, "list": list_command, "show": show, "docs": docs, "doctor": doctor},
 }
-WITH_COLUMNS = {"identify", "predict", "orders", "diagnose"}  # verbs with the options --column and --unit
-WITH_ALL_JOINTS = {"identify", "diagnose"}
+WITH_COLUMNS = ("identify", "predict", "orders", "diagnose joint", "rig analyse")  # verbs with the options --column and --unit
+WITH_ALL_JOINTS = ("identify", "diagnose joint")
 ANSWERS_OF_RIG = {"--column", "--unit", "--side"}
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
@@ -87,9 +87,9 @@ def _options(
     """Options before a verb."""
 
 
-def _names_columns(words: list[str]) -> bool:
-    """True if a command has the options --column and --unit."""
-    return bool(WITH_COLUMNS & set(words[1:2])) or words[1:3] == ["rig", "analyse"]
+def _is_one_of(verbs: tuple[str, ...]) -> bool:
+    """True if the command line names one of these verbs."""
+    return " ".join(sys.argv[1:]).startswith(verbs)
 
 
 def main() -> None:
@@ -130,7 +130,7 @@ def _run() -> tuple[int, QuestionError | None]:
         code = exit_codes.INPUT_REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
-        _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
+        _print(f"strainwave: {one_line(with_options(reason, names_columns=_is_one_of(WITH_COLUMNS)))}\n", sys.stderr)
         code = exit_codes.INPUT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
@@ -142,7 +142,7 @@ def _is_accepted(answer: Answer) -> bool:
     options = {word for word in answer.options if word.startswith("--")}
     if sys.argv[1:2] == ["rig"]:
         return options <= ANSWERS_OF_RIG and not answer.files
-    return answer.given.get("joint") != ALL_JOINTS or bool(WITH_ALL_JOINTS & set(sys.argv[1:2]))
+    return answer.given.get("joint") != ALL_JOINTS or _is_one_of(WITH_ALL_JOINTS)
 
 
 def _answer(question: QuestionError) -> list[str]:

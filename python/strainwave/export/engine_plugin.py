@@ -28,7 +28,7 @@ from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import friction_attributes, inertia_on_a_hinge
 from strainwave.export.names import checked_name
-from strainwave.export.robot import Element, Robot, child, gears_of_joints, kept, timestep_of, written
+from strainwave.export.robot import Element, Robot, Twist, child, gears_of_joints, kept, timestep_of, written
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.messages import listed, one_line
@@ -118,9 +118,13 @@ def mujoco_plugin(
             _Plugin.of(each, name if number == 1 else f"{name}_{number}", max_torque, command, step)
             for number, each in enumerate(_distinct(gears.values()), start=1)
         ]
-        remarks = []
-        for shaft, gear in gears.items():
-            plugin = next(each for each in plugins if each.gear_set is gear)
+        plugin_of = {shaft: next(each for each in plugins if each.gear_set is gear) for shaft, gear in gears.items()}
+        twists = list[Twist]()
+        for shaft, plugin in plugin_of.items():
+            list(robot.replace_friction(robot.hinge(shaft), plugin.hold(robot.root), kept(keep)))
+            twists.append(Twist("", shaft, 1.0, plugin.coupled.stiffness, plugin.coupled.damping))
+        robot, remarks = Robot.stable(into, robot.longest_timestep(twists))
+        for shaft, plugin in plugin_of.items():
             remarks += _attach(robot, shaft, plugin, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
         text = written(robot.root)
     files: dict[str, str | bytes] = {}

@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
 
 from strainwave import Drive, Gear
+from strainwave.export.coupled import MAX_STABLE_SHARE
 from strainwave.files.budget import read_text
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, quoted
@@ -39,6 +41,16 @@ IMPLIED |= {"forcerange": "forcelimited", "actrange": "actlimited"}
 REPLACED = ("damping", "frictionloss", "armature")  # of a robot's joint, which a gear has itself
 
 
+class Twist(NamedTuple):
+    """The twist of a gear: its joints, the ratio, stiffness [N.m/rad] and damping [N.m.s/rad]; no rotor if it is no joint."""
+
+    rotor: str
+    output: str
+    ratio: float
+    stiffness: float
+    damping: float
+
+
 @dataclass(frozen=True)
 class Robot:
     """Model of a robot, to which gears are added.
@@ -52,15 +64,32 @@ class Robot:
     parents: dict[Element, Element]
 
     @classmethod
-    def of(cls, model: str | Path) -> Robot:
-        """Return the robot of an MJCF file, or of its text.
+    def of(cls, model: str | Path, timestep: float | None = None) -> Robot:
+        """Return the robot of an MJCF file, or of its text, with another timestep [s] if one is given.
 
         Raises:
             OSError: the file cannot be read
             ValueError: the text is no MJCF, or only MuJoCo can say which joints it has, and MuJoCo is not installed
         """
         is_text = isinstance(model, str) and "<" in model
-        return cls.in_tree(_whole(_parsed(str(model)), None) if is_text else _read(Path(model)))
+        root = _whole(_parsed(str(model)), None) if is_text else _read(Path(model))
+        if timestep is not None:
+            child(root, "option").set("timestep", repr(timestep))
+        return cls.in_tree(root)
+
+    @classmethod
+    def stable(cls, model: str | Path, longest: float) -> tuple[Robot, list[str]]:
+        """Return the robot of a file or text, with a shorter timestep if its own exceeds the longest [s], and a remark."""
+        robot = cls.of(model)
+        if robot.timestep <= longest:
+            return robot, []
+        wanted = MAX_STABLE_SHARE * longest
+        digit = 10.0 ** np.floor(np.log10(wanted))
+        shortened = cls.of(model, timestep=float(f"{np.floor(wanted / digit) * digit:.1g}"))
+        return shortened, [
+            f"the timestep is {shortened.timestep:g} s, not {robot.timestep:g} s: with this robot the gears are stable up to "
+            f"{longest:.2g} s; softer gears or more armature allow more"
+        ]
 
     @classmethod
     def in_tree(cls, root: Element) -> Robot:
@@ -71,6 +100,33 @@ class Robot:
     def timestep(self) -> float:
         """Timestep of the model [s]."""
         return timestep_of(self.root)
+
+    def longest_timestep(self, twists: Collection[Twist]) -> float:
+        """Return the longest stable timestep of a model with gears [s]; infinite if MuJoCo is missing or refuses the model.
+
+        Semi-implicit steps of a force k x + c v at an inertia J are stable for k dt² + 2 c dt < 4 J. Here 1/J is that of all
+        twists together, by the inertia of the whole robot where its joints are 0.
+        """
+        try:
+            import mujoco
+
+            model = mujoco.MjModel.from_xml_string(written(self.root))
+        except (ImportError, ValueError):
+            return np.inf
+        state, inertia = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+        mujoco.mj_forward(model, state)
+        mujoco.mj_fullM(model, state, inertia)
+        rows = np.zeros((len(twists), model.nv))
+        for row, each in zip(rows, twists, strict=True):
+            row[model.joint(each.output).dofadr[0]] = -1.0
+            if each.rotor:
+                row[model.joint(each.rotor).dofadr[0]] = 1.0 / each.ratio
+        mobility = rows @ np.linalg.solve(inertia, rows.T)
+        stiffness, damping = (
+            np.linalg.eigvalsh(mobility * np.sqrt(np.outer(values, values))).max()
+            for values in ([each.stiffness for each in twists], [each.damping for each in twists])
+        )
+        return float((np.sqrt(damping**2 + 4.0 * stiffness) - damping) / stiffness)
 
     def hinges(self) -> Iterator[str]:
         """Yield the names of the hinges of bodies."""

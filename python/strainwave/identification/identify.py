@@ -129,9 +129,10 @@ class Identified(ComparedByFields, Pictured, Reported):
     def _rows(self) -> Iterator[Row]:
         for each in self.parameters:
             taken = each.estimate
-            yield Row(taken.label, taken.value, taken.unit, taken.sigma, each.taken_from)
+            source = each.taken_from if len(self.files) > 1 else ""
+            yield Row(taken.label, taken.value, taken.unit, taken.sigma, source)
         for file in self.files:
-            yield Row(file.name, file._headline())
+            yield Row(file.name, file.in_words)
 
     def _remarks(self) -> Iterator[str]:
         return (f"FAILED: {check.source}: {check.message}; {check.remedy}" for check in self.failed)

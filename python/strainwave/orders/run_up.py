@@ -35,6 +35,9 @@ SAMPLES_OF_SEARCH = 2**15  # that first values are searched in, at most
 SMOOTH_PERIODS = 8.0  # of an order, over which its amplitude is averaged for the first value of the resonance
 START_DAMPING = 0.03  # of critical damping (assumed): of bolted structures of metal
 DAMPING_BOUNDS = (1e-4, 0.5)  # of critical damping
+MAX_FIXED = 6  # fixed frequencies
+MIN_LINE_POWER = 50.0  # over the median beside it: noise has it once in 10^15
+LINE_REACH = 12  # lines of the spectrum on each side, but for the next two, that it is compared with
 MIN_SIGNIFICANCE = 5.0  # standard deviations of an amplitude, from which a line or a resonance is stated
 PASSED_WIDTHS = 3.0  # half-power half widths on each side, that the orders must pass for a damping
 
@@ -100,22 +103,15 @@ def run_up(time: Array, angle: Array, speed: Array, series: Array, lines: Sequen
     orders = _whole([line.order for line in lines if line.kind in ("order", "either")])[:MAX_ORDERS]
     fixed = [line.frequency for line in lines if line.kind == "time"]
     problem = _Problem(time, angle, np.abs(speed), series, orders, fixed)
-    start = problem.start()
-    found: _Fit | None = None
+    start, found = problem.start(), None
     remarks = ["no order stands out, so no resonance is looked for"]
     if start is not None:
-        fits = {"each frequency answers at once": problem.fitted(start, steady=True)}
-        fits["the structure answers with its own decay"] = problem.fitted(start, steady=False)
-        way, found = min(fits.items(), key=lambda each: each[1].noise)
-        (other,) = (each for each in fits.values() if each is not found)
-        remarks = [
-            f"of two models of a passing, the one in which {way} leaves less; the other one has the resonance at "
-            f"{number(float(other.values[0]), 4)} Hz, and half the difference is in the standard deviations"
-        ]
+        found, remarks = problem.passed(start)
+        while len(problem.fixed) < MAX_FIXED and (hidden := problem.line_left(found)):
+            problem = replace(problem, fixed=[*problem.fixed, hidden])
+            found, remarks = problem.passed(found.values)
         if why := problem.why_not(found):
             found, remarks = None, [f"no resonance is determined: {why}"]
-        else:
-            found = replace(found, sigmas=np.hypot(found.sigmas, 0.5 * np.abs(found.values - other.values)))
     if found is None:
         found = problem.without()
     has = len(found.values) > 0
@@ -174,6 +170,32 @@ class _Problem:
             if envelope.max() / max(usual, 1e-300) > peak:
                 best, peak = float(middle[int(np.argmax(envelope))]), float(envelope.max() / max(usual, 1e-300))
         return None if best is None or best <= 0.0 else np.array([best, START_DAMPING])
+
+    def passed(self, start: Array) -> tuple[_Fit, list[str]]:
+        """Return the fit that leaves less, with half the difference of the other one in its deviations; and a remark."""
+        fits = {"each frequency answers at once": self.fitted(start, steady=True)}
+        fits["the structure answers with its own decay"] = self.fitted(start, steady=False)
+        way, best = min(fits.items(), key=lambda each: each[1].noise)
+        (other,) = (each for each in fits.values() if each is not best)
+        remark = (
+            f"of two models of a passing, the one in which {way} leaves less; the other one has the resonance at "
+            f"{number(float(other.values[0]), 4)} Hz, and half the difference is in the standard deviations"
+        )
+        return replace(best, sigmas=np.hypot(best.sigmas, 0.5 * np.abs(best.values - other.values))), [remark]
+
+    def line_left(self, fit: _Fit) -> float:
+        """Return the frequency of a line that orders hid when they passed it [Hz]; 0 if there is none."""
+        from strainwave.statistics.spectrum import hann
+
+        columns = self._columns(fit.values, fit.steady)
+        left = self.series - columns @ solved(columns, self.series)
+        power = np.abs(np.fft.rfft(left * hann(len(left)))) ** 2
+        at = int(np.argmax(power[1:-1])) + 1
+        beside = np.concatenate([power[max(at - LINE_REACH, 0) : max(at - 2, 0)], power[at + 3 : at + 1 + LINE_REACH]])
+        if power[at] < MIN_LINE_POWER * np.median(beside):  # an order that is left has as much beside
+            return 0.0
+        low, middle, high = np.log(power[at - 1 : at + 2])
+        return float((at + 0.5 * (low - high) / (low - 2.0 * middle + high)) / (len(left) * (self.time[1] - self.time[0])))
 
     def fitted(self, start: Array, steady: bool) -> _Fit:
         """Return the fit of frequency and damping."""

@@ -115,7 +115,7 @@ class Ripple(ComparedByFields, Pictured, Reported):
         """Return a figure of amplitude over order, with the noise, what a line needs, and the lines found."""
         from strainwave.orders.pictures import draw_spectrum
 
-        with marks.new_figure(3.2, f"Ripple of {self.column.replace('_', ' ')}") as figure:
+        with marks.new_figure(3.2) as figure:
             draw_spectrum(figure, self)
         return figure
 

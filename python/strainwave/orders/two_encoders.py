@@ -153,7 +153,7 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
         """Return a figure of the error over the record, its kinematic part and the residual."""
         from strainwave.orders.pictures import draw_error
 
-        with marks.new_figure(3.8, "Transmission error") as figure:
+        with marks.new_figure(3.8) as figure:
             draw_error(figure, self)
         return figure
 
