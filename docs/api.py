@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cached_property
-from inspect import ismodule, isroutine
+from inspect import isfunction, ismodule, isroutine
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -204,7 +204,7 @@ def member_entry(model: type[Any], name: str, member: Any) -> str:
         text = model_entry(name, member) if member.__qualname__.startswith(f"{model.__qualname__}.") else ""
     elif isinstance(member, property):
         text = f".. autoproperty:: {name}"
-    elif isinstance(member, staticmethod):
+    elif isinstance(member, staticmethod) or isfunction(member):  # the latter of Python, which all models share
         text = f".. automethod:: {name}"
     elif declared := docstrings.overload(member):
         text = f".. automethod:: {name}{docstrings.member_arguments(model, declared[0])}"

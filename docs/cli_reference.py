@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from textwrap import dedent, indent
 from typing import Any
 
 import typer
@@ -65,6 +66,9 @@ def section(name: str, verb: Any) -> str:
     text += [plain(" ".join(paragraph.split())) for paragraph in help_text.split("\n\n")]
     records = [each.get_help_record(context) for each in parameters if each.name != "help"]
     text += [option(*record) for record in records if record]  # a hidden option has none
+    if examples := (verb.epilog or "").partition("Examples:\n")[2]:
+        lines = re.sub(r"^(?=strainwave)", "$ ", dedent(examples), flags=re.MULTILINE)
+        text.append(f"Examples:\n\n.. code-block:: console\n\n{indent(lines, '   ')}")
     return "\n\n".join(text)
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import theory
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
-PLACE = "<!-- the pictures of all examples -->"  # on the page gallery.md
+PLACE = "<!-- the pictures of all examples, in place of this list -->"  # on the page gallery.md
 PICTURE = re.compile(r'savefig\("(\w+\.png)"')
 PAGES = {  # with more on an example, by its number
     "02": ("reference/catalogue.md",),
@@ -80,7 +80,7 @@ def write(source: Path) -> None:
     text = gallery.read_text(encoding="utf-8")
     if PLACE not in text:
         raise ValueError(f"{gallery} has no line {PLACE}, where the pictures go")
-    gallery.write_text(text.replace(PLACE, cards()), encoding="utf-8")
+    gallery.write_text(text.partition(PLACE)[0] + cards(), encoding="utf-8")
 
 
 def cards() -> str:

@@ -59,7 +59,9 @@ LISTS: dict[str, Callable[[], str]] = {
 def filled(text: str) -> str:
     """Return a page with each list as it is computed now, between its comment and the one of its end."""
     for place, listed in LISTS.items():
-        text = re.sub(rf"(?<={re.escape(place)}\n).*?(?={END})", lambda _, of=listed: f"\n{of()}\n\n", text, flags=re.DOTALL)
+        before, found, rest = text.partition(f"{place}\n")
+        if found:
+            text = f"{before}{found}\n{listed()}\n\n{END}{rest.partition(END)[2]}"
     return text
 
 

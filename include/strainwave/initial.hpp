@@ -113,12 +113,23 @@ private:
         return now.load_torque + now.friction_output;
     }
 
+    /// Friction after a long motion at these speeds. A shaft whose speed is that of rounding is at rest.
     constexpr void settle_friction() {
         const auto fresh = drive.initial_state();
-        x.continuous.friction_input = fresh.continuous.friction_input;
-        x.continuous.friction_mesh = fresh.continuous.friction_mesh;
-        x.continuous.friction_output = fresh.continuous.friction_output;
+        auto& y = x.continuous;
+        y.friction_input = fresh.continuous.friction_input;
+        y.friction_mesh = fresh.continuous.friction_mesh;
+        y.friction_output = fresh.continuous.friction_output;
+        const S input = y.input_speed, output = y.output_speed;
+        y.input_speed = motion(input);
+        y.output_speed = motion(output);
         x = drive.relaxed(drive.consistent(x), u, S(1e30));
+        y.input_speed = input;
+        y.output_speed = output;
+    }
+    static constexpr S motion(const S& speed) {
+        constexpr double min_speed = 1e-9;  // rad/s: a turn in 200 years; the rate of a large sine at its peak is 1e-13 by rounding
+        return select(abs(speed) > S(min_speed), speed, S(0.0));
     }
     /// Friction, a sampled controller, the motor and the sensors, in this order: each as those before have it.
     constexpr void settle() {

@@ -16,6 +16,8 @@ import lazy_loader
 try:
     import_module("strainwave._core")
 except Exception as error:  # in a clone also one of the build, which compiles what was edited
+    if isinstance(error.__cause__, KeyboardInterrupt):
+        raise error.__cause__ from None
     import sys
     import sysconfig
 

@@ -148,8 +148,9 @@ def pairs(option: str, values: Sequence[str] | None, known: set[str]) -> dict[st
         if not (name and equals and given):
             raise ValueError(f"{option} {value}: write it as {option} name=value")
         if name not in known:
+            what = "constant" if option == "--constant" else "column"
             raise ValueError(
-                f"{option} {value}: {name} is no column of these measurements; they have {', '.join(sorted(known))}"
+                f"{option} {value}: {name} is no {what} of these measurements; they have {', '.join(sorted(known))}"
             )
         found[name] = given
     return found

@@ -23,9 +23,9 @@ Value = float | str | tuple[float, float] | None
 
 MAX_REPR = 120  # characters
 PAGE_WIDTH = 80  # characters of a line of a table
-MAX_NAME_WIDTH = 44  # characters; a longer name has a line of its own
+MAX_NAME_WIDTH = 32  # characters; a longer name has a line of its own
 MIN_NOTE_WIDTH = 24  # characters; a note with less room stands below its row
-MAX_PRINTED_ROWS = 120  # of a table; data and frames have all
+MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
 DIGITS = 5  # of a number without a standard deviation
 BESIDE = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
@@ -95,7 +95,16 @@ class Presented:
         from strainwave.drawing.notebook import html
 
         rows = list(self._rows())
-        return html(type(self).__name__, self._headline(), rows, list(self._remarks()), picture_of(self))
+        return html(type(self).__name__, self._headline(), rows, list(self._remarks()), self._picture())
+
+    def _picture(self) -> Figure | None:
+        """Return the picture for a notebook; None if there is nothing to draw."""
+        if not hasattr(self, "plot"):
+            return None
+        try:
+            return self.plot()  # type: ignore[no-any-return]
+        except ValueError:  # nothing to draw
+            return None
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result in the types that JSON has: every row by its name, in full precision.
@@ -177,16 +186,6 @@ class Reported:
         return Path(folder) / "report.html"
 
 
-def picture_of(result: Any) -> Figure | None:
-    """Return the picture of a result; None if it has none."""
-    if not hasattr(result, "plot"):
-        return None
-    try:
-        return result.plot()  # type: ignore[no-any-return]
-    except ValueError:  # nothing to draw
-        return None
-
-
 # ---- Rows of a dataclass ---------------------------------------------------------------------------------------------
 
 
@@ -230,7 +229,7 @@ def rows_of(name: str, value: Any, unit: str = "", sigma: float = nan) -> Iterat
         yield Row(name, abs(value), unit, sigma, f"at {typeset.number(_degrees(value), 4)}°")
     elif isinstance(value, str | PathLike):
         yield from [Row(name, one_line(str(value)))] if str(value) else []
-    elif isinstance(getattr(value, "value", None), float) and hasattr(value, "sigma"):
+    elif isinstance(getattr(value, "value", None), float) and isinstance(getattr(value, "sigma", None), float):
         yield Row(name, value.value, getattr(value, "unit", unit), value.sigma)
     elif hasattr(value, "_headline"):
         yield Row(name, value._headline())

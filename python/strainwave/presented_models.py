@@ -12,7 +12,7 @@ from strainwave.presentation import MAX_REPR, Presented, Row, counted
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FORMS = ("__str__", "_repr_html_", "to_dict", "to_frame", "_remarks")
+FORMS = ("__str__", "_repr_html_", "to_dict", "to_frame", "_remarks", "_picture")
 
 
 class Model(Presented):

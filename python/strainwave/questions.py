@@ -24,7 +24,7 @@ class Answer:
         label: the answer in words
         given: the statement, as keyword arguments of `FileMapping`; numbers that only a person knows as an example
         numbers: these numbers in words, by the names of their constants or columns
-        files: paths of files to read with it
+        files: further words of the command, as paths of files to read with it
         gives: what the file is with this answer, in words
     """
 
@@ -67,7 +67,8 @@ class Answer:
         given = {**first.given, **self.given}
         given |= {name: {**first.given[name], **self.given[name]} for name in TABLES if {*first.given} & {*self.given} & {name}}
         label = ", ".join(filter(None, (first.label, self.label)))
-        return replace(self, label=label, given=given, numbers={**first.numbers, **self.numbers})
+        numbers, files = {**first.numbers, **self.numbers}, (*first.files, *self.files)
+        return replace(self, label=label, given=given, numbers=numbers, files=files)
 
     def _written(self, name: str, value: object) -> str:
         """Return a value of an option, with the word in place of a number that only a person knows."""

@@ -38,7 +38,7 @@ _INDEXED = re.compile(r"\b([^\W\d_])_(\w+)\b")  # a letter with an index, as F_c
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _GREEK = {
     "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "theta": "θ", "sigma": "σ", "tau": "τ",
-    "phi": "φ", "omega": "ω",
+    "phi": "φ", "psi": "ψ", "omega": "ω",
 }  # fmt: skip
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
 _PLAIN = range(-4, 6)  # decades of numbers written without a power of ten

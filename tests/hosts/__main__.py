@@ -2,7 +2,7 @@
 
 Each gear is a file. The first command is the one of the host's page. The host then moves the gear as its user would: a command
 to and fro, in open loop for MJCF. Agreement is the RMS difference to `sw.simulate` over the range of the quantity; of BAM and
-URDF that of the friction over speeds. Steps a second are those of the host on this machine: communication steps of FMPy,
+URDF that of the friction over speeds. Steps per second of processor time on this machine are communication steps of FMPy,
 timesteps of MuJoCo, calls of firmware, joints times steps of Newton. Nothing is written by hand.
 """
 

@@ -35,7 +35,7 @@ SPEEDS = np.concatenate([-np.geomspace(100.0, 1.0, 50), np.geomspace(1.0, 100.0,
 
 
 class Compared(NamedTuple):
-    """Comparison of a host: the RMS difference to the simulation over the size of a quantity, and steps a second."""
+    """Comparison of a host: RMS difference to the simulation over the size of a quantity, and steps per processor second."""
 
     share: float
     quantity: str
@@ -114,7 +114,7 @@ def in_fmpy(version: int, exchange: bool) -> Callable[[sw.GearSet, Path], Compar
         command, rate = motion().value(instants), motion().rate(instants)
         columns = [("time", instants), ("command", command), *([("command_rate", rate)] if exchange else [])]
         signals = np.rec.fromarrays([each for _, each in columns], names=[name for name, _ in columns])
-        begin = time.perf_counter()
+        begin = time.process_time()
         result = fmpy.simulate_fmu(
             str(path),
             stop_time=DURATION,
@@ -124,12 +124,46 @@ def in_fmpy(version: int, exchange: bool) -> Callable[[sw.GearSet, Path], Compar
             fmi_type="ModelExchange" if exchange else "CoSimulation",
             **({"relative_tolerance": SOLVER_TOLERANCE} if exchange else {}),
         )
-        rate_of_steps = len(instants) / (time.perf_counter() - begin)
+        rate_of_steps = len(instants) / (time.process_time() - begin)
         wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)
         angle = np.interp(wanted.time, result["time"], result["output_angle"])
         return Compared(share(angle, wanted["output_angle"]), "output angle", rate_of_steps)
 
     return run
+
+
+# Runs in a process of its own: its library prints. The wheel of ecospy lacks a library of TBB, which that of tbb contains.
+ECOS_RUN = """
+import ctypes, importlib.metadata, sys, time, numpy
+(library,) = (each for each in importlib.metadata.files("tbb") if each.name == "libtbb.so.12")
+ctypes.CDLL(str(library.locate()), ctypes.RTLD_GLOBAL)
+from ecospy import EcosSimulation, EcosSimulationStructure
+path, commands, step, out = sys.argv[1:]
+structure = EcosSimulationStructure()
+structure.add_model("gear", path)
+simulation = EcosSimulation(float(step), structure=structure)
+simulation.init()
+angles, begin = [], time.process_time()
+for command in numpy.load(commands):
+    simulation.set_real("gear::command", command)
+    angles.append(simulation.get_real("gear::output_angle"))
+    simulation.step()
+numpy.save(out, [*angles, len(angles) / (time.process_time() - begin)])
+"""
+
+
+def in_ecos(gear_set: sw.GearSet, folder: Path) -> Compared:
+    """Return the run of an FMU by ecos, whose importer is fmi4c."""
+    (path,) = folder.glob("*.fmu")
+    instants = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION_STEP) + 1)
+    np.save(folder / "commands.npy", motion().value(instants))
+    words = [str(path), str(folder / "commands.npy"), str(COMMUNICATION_STEP), str(folder / "angles.npy")]
+    done = subprocess.run([sys.executable, "-c", ECOS_RUN, *words], capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip().splitlines()[-1])
+    *angles, rate = np.load(folder / "angles.npy")
+    wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)["output_angle"]
+    return Compared(share(np.array(angles), wanted), "output angle", rate)
 
 
 # Runs in a process of its own: a plugin stays registered.
@@ -138,12 +172,12 @@ import sys, time, mujoco, numpy
 library, path, swing, frequency, steps, out = sys.argv[1:]
 mujoco.mj_loadPluginLibrary(library)
 model = mujoco.MjModel.from_xml_path(path)
-data, angles, begin = mujoco.MjData(model), [0.0], time.perf_counter()
+data, angles, begin = mujoco.MjData(model), [0.0], time.process_time()
 for _ in range(int(steps)):
     data.ctrl[0] = float(swing) * (1.0 - numpy.cos(2.0 * numpy.pi * float(frequency) * data.time))
     mujoco.mj_step(model, data)
     angles.append(data.qpos[0])
-numpy.save(out, [*angles, int(steps) / (time.perf_counter() - begin), model.opt.timestep])
+numpy.save(out, [*angles, int(steps) / (time.process_time() - begin), model.opt.timestep])
 """
 
 
@@ -187,12 +221,12 @@ def in_mujoco(gear_set: sw.GearSet, folder: Path) -> Compared:
     torque = sw.scenario.sine(size, FREQUENCY, DURATION)
     values = torque.value(model.opt.timestep * np.arange(steps))
     angles, place = [0.0], model.joint("gear_output").qposadr[0]
-    begin = time.perf_counter()
+    begin = time.process_time()
     for value in values:
         data.ctrl[0] = value
         mujoco.mj_step(model, data)
         angles.append(data.qpos[place])
-    rate = steps / (time.perf_counter() - begin)
+    rate = steps / (time.process_time() - begin)
     wanted = sw.simulate(gear_set.drive, torque, sample=model.opt.timestep)["output_angle"]
     return Compared(share(np.array(angles), wanted), "output angle, open loop", rate)
 
@@ -207,9 +241,9 @@ def in_firmware(scalar: Any) -> Callable[[sw.GearSet, Path], Compared]:
         instants = firmware.period * np.arange(steps + 1)
         command = motion().value(instants)
         inputs = {"command": command[:-1], "command_rate": np.diff(command) / firmware.period}
-        begin = time.perf_counter()
+        begin = time.process_time()
         found = program.run(**inputs, temperature=np.full(steps, 293.15))
-        rate = steps / (time.perf_counter() - begin)
+        rate = steps / (time.process_time() - begin)
         straight = sw.scenario.table(instants, command)
         wanted = sw.simulate(gear_set.drive, straight, firmware.period, sample=firmware.period)["output_angle"]
         return Compared(share(found["output_angle"], wanted[:steps]), "output angle", rate)
@@ -227,9 +261,9 @@ def in_newton(gear_set: sw.GearSet, folder: Path) -> Compared:
     run = build.reference_run(plant, straight, motion(0.2), about["step"])
     angles: Any = SimpleNamespace(value=straight.value, rate=np.zeros_like)  # as a user who sets no target speed
     found = build.followed(package, run, angles, about)
-    begin = time.perf_counter()
+    begin = time.process_time()
     build.followed(package, run, angles, about, count=NEWTON_JOINTS)
-    rate = NEWTON_JOINTS * len(run) / (time.perf_counter() - begin)
+    rate = NEWTON_JOINTS * len(run) / (time.process_time() - begin)
     return Compared(share(found["load_torque"], run["load_torque"]), "torque of the joint", rate)
 
 
@@ -244,9 +278,9 @@ def in_control(gear_set: sw.GearSet, folder: Path) -> Compared:
     instants = np.linspace(0.0, DURATION, round(DURATION / COMMUNICATION_STEP) + 1)
     inputs = {"command": motion().value(instants), "command_rate": motion().rate(instants)}
     given = np.array([inputs.get(name, np.zeros(len(instants))) for name in plant.input_labels])
-    begin = time.perf_counter()
+    begin = time.process_time()
     response = control.forced_response(plant, instants, given)
-    rate = len(instants) / (time.perf_counter() - begin)
+    rate = len(instants) / (time.process_time() - begin)
     wanted = sw.simulate(gear_set.drive, motion(), sample=COMMUNICATION_STEP)["output_angle"]
     return Compared(share(response.outputs[plant.output_labels.index("output_angle")], wanted), "output angle", rate)
 
@@ -294,6 +328,8 @@ HOSTS = (
     Host("MuJoCo, plugin", ("mujoco-plugin",), in_plugin),
     Host("FMPy, FMI 2 co-simulation", ("fmu",), in_fmpy(2, False)),
     Host("FMPy, FMI 3 co-simulation", ("fmu", "--version", "3"), in_fmpy(3, False)),
+    Host("ecos, FMI 2 co-simulation", ("fmu",), in_ecos),
+    Host("ecos, FMI 3 co-simulation", ("fmu", "--version", "3"), in_ecos),
     Host("FMPy, FMI 2 model exchange", ("fmu", "--model-exchange"), in_fmpy(2, True)),
     Host("FMPy, FMI 3 model exchange", ("fmu", "--version", "3", "--model-exchange"), in_fmpy(3, True)),
     Host("firmware, double", ("firmware", "--part", "drive", "--scalar", "double", "--name", "drive"), in_firmware("double")),

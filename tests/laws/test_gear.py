@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, MixedLubrication, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Scaled, Stochastic, ToothErrors
+from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.signals import outputs
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.support.samples import sample
-from tests.support.strategies import SUITED, built, drives, gears, made, models, suited, without_detent
+from tests.support.strategies import SUITED, built, drives, gears, log_uniform, made, models, signed, suited, without_detent
 
 Array = NDArray[np.float64]
 
@@ -183,6 +184,25 @@ def check_friction(gear: sw.Gear, run: sw.Recording) -> None:
         if not has_memory(law) and law == without_detent(law):  # a detent gives back what it takes
             power = run[place] * speed
             assert power.min() >= -1e-15 * np.abs(run[place]).max() * np.abs(speed).max()
+
+
+# Rest
+
+ROUNDING_SPEEDS = signed(log_uniform(1e-20, 1e-13))  # rad/s of the output, as the rate of a sine at its peak has them
+STILL = np.array([0.0, 0.0, 0.0, 0.0, 293.15, 0.0])  # inputs
+
+
+@pytest.mark.parametrize(("part", "model"), [each for each in EVERY_PART if each.values[0] in PLACES])
+@settings(max_examples=sample(4, 10))
+@given(data=st.data(), speed=ROUNDING_SPEEDS, angle=st.floats(-1.0, 1.0))
+def test_a_speed_of_rounding_neither_bends_bristles_nor_winds_up_the_gear(
+    part: str, model: Any, data: st.DataObject, speed: float, angle: float
+) -> None:
+    law = data.draw(laws(part, model))
+    assume(getattr(innermost(law), "exponent", 1.0) >= 0.5)  # else a torque per power of the speed is one at this speed, too
+    drive = changed(part, law)
+    at_rest, moving = (beginning_numbers(drive, {"output_angle": angle, "output_speed": each}, STILL) for each in (0.0, speed))
+    np.testing.assert_allclose(moving, at_rest, rtol=1e-9, atol=1e-9)
 
 
 # Finite, and no friction drives

@@ -17,6 +17,7 @@ import strainwave as sw
 from hypothesis import given, strategies as st
 from strainwave import _core
 from strainwave.files import units
+from strainwave.presentation import MAX_REPR
 
 from tests.support.each import each
 from tests.support.strategies import Field, drives, fitting, gears, models, usual
@@ -221,10 +222,16 @@ def test_a_model_that_was_never_made_is_no_part_of_another(model: Any) -> None:
 
 @pytest.mark.slow("physics")
 @given(any_value)
-def test_what_is_printed_is_what_makes_the_same_value(value: Any) -> None:
+def test_what_is_printed_is_what_makes_the_same_value_if_one_line_has_room_for_it(value: Any) -> None:
     parts_last = reversed(EVERY_MODEL)  # so that a part of a drive wins over a fault or an onset of its name
     names = {model.__name__: model for model in [*parts_last, sw.Sensors, sw.Compensation, sw.Gear]}
-    assert eval(repr(value), names) == value
+    name, printed = type(value).__name__, repr(value)
+    fields = (f"{field['name']}={getattr(value, field['name'])!r}" for field in value.fields)
+    whole = f"{name}({', '.join(fields)})"
+    if len(whole) > MAX_REPR or "=<" in whole:  # too long, or a part of it is
+        assert printed.startswith(f"<{name}: ")
+    else:
+        assert eval(printed, names) == value
 
 
 ways_to_copy = st.sampled_from(

@@ -100,7 +100,7 @@ def test_the_page_has_the_answers_and_the_limits(found: PositionControl, text: s
 def test_every_number_has_its_source_and_what_is_assumed_says_so(text: str) -> None:
     full, simplified = section(text, "Numbers and sources").split("### The simplified model")
     for model in (full, simplified):
-        assert re.search(r"^ +k +150 +N\.m/rad +document P", model, re.MULTILINE)
+        assert re.search(r"^ +k +150 +N\.m/rad +position control article", model, re.MULTILINE)
         assert re.search(r"^ +proportional +20 .* assumed: ", model, re.MULTILINE)
         assert not re.search(r"^ +resistance .* assumed", model, re.MULTILINE)
     assert re.search(r"^ +quadratic +1\.5738e-06 ", full, re.MULTILINE)

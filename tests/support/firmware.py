@@ -19,7 +19,7 @@ from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
 BAD = (np.nan, np.inf, -np.inf, 3e38, -3e38)
-STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Werror")
+STRICT = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror")
 NO_LIBRARY = ("-nostdinc++",)  # nor its headers
 # A loop in C over many steps.
 LOOP = """#include "{name}.h"

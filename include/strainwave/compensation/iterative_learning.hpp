@@ -100,10 +100,10 @@ struct IterativeLearning {
         const S at = inputs.command.value, speed = abs(inputs.input_speed()), error = at - inputs.measured.output_angle;
         const S below = select(speed < max_speed, period * within(at), S(0.0));
         const S step = select(speed < min_speed, S(0.0), below), sense = sense_at(x, at);
-        const S source = at - inputs.command.rate * lag, late = placed(source), place = placed(at);
+        const S caused_at = at - inputs.command.rate * lag, late = placed(caused_at), place = placed(at);
         State next{x.forward, x.backward, at, sense, S(1.0)};
         const S rate = min(min(gain, abs(inputs.command.rate) * per_angle()), S(1.0) / period);
-        const S change = within(source) * rate * error;
+        const S change = within(caused_at) * rate * error;
         learn(next.forward, x.forward, S(0.5) * (S(1.0) + sense) * step, late, place, change);
         learn(next.backward, x.backward, S(0.5) * (S(1.0) - sense) * step, late, place, change);
         return next;

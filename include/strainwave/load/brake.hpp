@@ -35,8 +35,8 @@ struct Brake {
     static constexpr Field input{"brake_torque", "N.m", "Torque with which the brake resists motion", 0};
 
     constexpr S torque(const S&, const S&) const { return S(0.0); }
-    constexpr S slip(const S& input) const { return max(input, S(0.0)); }
-    constexpr S hold(const S& input) const { return breakaway_ratio * slip(input); }
+    constexpr S slip(const S& torque_asked) const { return max(torque_asked, S(0.0)); }
+    constexpr S hold(const S& torque_asked) const { return breakaway_ratio * slip(torque_asked); }
 };
 
 }  // namespace strainwave::load

@@ -7,6 +7,7 @@ import sys
 import warnings
 from contextlib import redirect_stdout
 from io import StringIO, TextIOWrapper
+from pathlib import Path
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -29,7 +30,7 @@ from strainwave.commands.predict import predict
 from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
-from strainwave.messages import one_line, with_options
+from strainwave.messages import one_line, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError
 
 # Verbs, and rooms of several verbs, under the headings of the help.
@@ -39,8 +40,8 @@ HEADINGS: dict[str, dict[str, Any]] = {
     "Faults": {"diagnose": diagnose, "dataset": dataset},
     "Look and check": {"demo": demo, "list": list_command, "show": show, "docs": docs, "doctor": doctor},
 }
-WITH_COLUMNS = {"identify", "predict", "orders", "diagnose"}  # verbs with the options --column and --unit
-WITH_ALL_JOINTS = {"identify", "diagnose"}
+WITH_COLUMNS = ("identify", "predict", "orders", "diagnose joint", "rig analyse")  # verbs with the options --column and --unit
+WITH_ALL_JOINTS = ("identify", "diagnose joint")
 ANSWERS_OF_RIG = {"--column", "--unit", "--side"}
 
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
@@ -86,9 +87,9 @@ def _options(
     """Options before a verb."""
 
 
-def _names_columns(words: list[str]) -> bool:
-    """True if a command has the options --column and --unit."""
-    return bool(WITH_COLUMNS & set(words[1:2])) or words[1:3] == ["rig", "analyse"]
+def _is_one_of(verbs: tuple[str, ...]) -> bool:
+    """True if the command line names one of these verbs."""
+    return " ".join(sys.argv[1:]).startswith(verbs)
 
 
 def main() -> None:
@@ -129,7 +130,7 @@ def _run() -> tuple[int, QuestionError | None]:
         code = exit_codes.INPUT_REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
         reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
-        _print(f"strainwave: {one_line(with_options(reason, names_columns=_names_columns(sys.argv)))}\n", sys.stderr)
+        _print(f"strainwave: {one_line(with_options(reason, names_columns=_is_one_of(WITH_COLUMNS)))}\n", sys.stderr)
         code = exit_codes.INPUT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
@@ -141,7 +142,7 @@ def _is_accepted(answer: Answer) -> bool:
     options = {word for word in answer.options if word.startswith("--")}
     if sys.argv[1:2] == ["rig"]:
         return options <= ANSWERS_OF_RIG and not answer.files
-    return answer.given.get("joint") != ALL_JOINTS or bool(WITH_ALL_JOINTS & set(sys.argv[1:2]))
+    return answer.given.get("joint") != ALL_JOINTS or _is_one_of(WITH_ALL_JOINTS)
 
 
 def _answer(question: QuestionError) -> list[str]:
@@ -170,6 +171,12 @@ def _misuse(error: Any) -> str:
     command, wrong = "strainwave" if error.ctx is None else error.ctx.command_path, error.format_message().rstrip(".")
     if wrong.startswith("Missing") and error.ctx is not None:
         wrong += f" of {' '.join([command, *error.ctx.command.collect_usage_pieces(error.ctx)])}"
+        gear = str(error.ctx.params.get("gear"))
+        if Path(gear).suffix != ".toml" and Path(gear).exists():
+            wrong = f"{unquoted(gear)} is a file, where the gear is asked for: name it first (strainwave list gears)"
+    verbs = getattr(error.ctx.command, "commands", {}) if error.ctx is not None and error.ctx.parent is not None else {}
+    if wrong.startswith("No such command"):
+        wrong += f": {command} is followed by {' or '.join(verbs)}" if verbs else ""
     return f"{wrong}; see {command} --help"
 
 

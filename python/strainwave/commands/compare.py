@@ -14,7 +14,8 @@ def compare(
     first: Annotated[str, typer.Argument(help="A recording (.csv, .parquet), a gear file, or a set by name.")],
     second: Annotated[str, typer.Argument(help="Another one of the same kind.")],
     column: Annotated[
-        list[str] | None, typer.Option(help="A column to compare; repeat as needed. All that both have, if not given.")
+        list[str] | None,
+        typer.Option(metavar="COLUMN", help="A column to compare; repeat as needed. All that both have, if not given."),
     ] = None,
     measured: Annotated[
         Path | None,

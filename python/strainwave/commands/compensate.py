@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from strainwave.commands.options import Drive, folder
+from strainwave.commands.options import Drive, folder, numeric, whole
 
 
 def compensate(
@@ -15,16 +15,14 @@ def compensate(
     goal: Annotated[
         str, typer.Option(help="position (to and fro), speed (constant), smooth (creeping) or torque.")
     ] = "position",
-    period: Annotated[float, typer.Option(help="Period of the controller [s].")] = 1e-3,
-    delay: Annotated[float, typer.Option(help="From a sample to the output of the controller [s].")] = 0.0,
+    period: Annotated[float, numeric("Period of the controller [s].")] = 1e-3,
+    delay: Annotated[float, numeric("From a sample to the output of the controller [s].")] = 0.0,
     encoder: Annotated[str, typer.Option(help="output if the controller sees the output angle too.")] = "input",
-    travel: Annotated[float | None, typer.Option(help="Travel of the output, for position [rad]; usually 0.2.")] = None,
-    speed: Annotated[float | None, typer.Option(help="Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
-    torque: Annotated[
-        float | None, typer.Option(help="Torque of the output, for torque [N.m]; usually a fifth of the largest.")
-    ] = None,
-    members: Annotated[int, typer.Option(help="Number of drawn gears.")] = 40,
-    seed: Annotated[int, typer.Option(help="Seed of the draw.")] = 0,
+    travel: Annotated[float | None, numeric("Travel of the output, for position [rad]; usually 0.2.")] = None,
+    speed: Annotated[float | None, numeric("Speed of the output [rad/s]; usually 20 rad/s of the input.")] = None,
+    torque: Annotated[float | None, numeric("Torque of the output, for torque [N.m]; usually a fifth of the largest.")] = None,
+    members: Annotated[int, whole("Number of drawn gears.")] = 40,
+    seed: Annotated[int, whole("Seed of the draw.")] = 0,
     out: Annotated[Path, folder("Folder for the files written.")] = Path("out/compensate"),
 ) -> None:
     """Find the compensation that gains most over a tuned cascade.

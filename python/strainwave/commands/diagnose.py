@@ -38,14 +38,18 @@ def joint(
     given: FileOptions,
     gear: Annotated[str | None, typer.Option(help="Gear of the joint: a set by name, or a gear file.")] = None,
     baseline: Annotated[
-        list[Path] | None, typer.Option(help="Recording of the healthy joint, or a folder of them; repeat as needed.")
+        list[Path] | None,
+        typer.Option(metavar="FILE", help="Recording of the healthy joint, or a folder of them; repeat as needed."),
     ] = None,
     ratio: Annotated[float | None, numeric("Ratio of the gear, if no gear is given.")] = None,
     rate: Annotated[float | None, numeric("Samples per second of files without time, in Hz.")] = None,
     false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = FALSE_ALARM,
     order: Annotated[
         list[str] | None,
-        typer.Option(help="Further order per revolution of the input; repeat as needed. --bearing names those of a bearing."),
+        typer.Option(
+            metavar="ORDER",
+            help="Further order per revolution of the input; repeat as needed. --bearing names those of a bearing.",
+        ),
     ] = None,
     bearing: Annotated[
         list[str] | None,
@@ -115,7 +119,8 @@ def limit(
     probability: Annotated[float, numeric("That such an error is found.")] = DETECTION_PROBABILITY,
     false_alarm: Annotated[float, numeric("Rate of false alarms over all tests of a recording.")] = FALSE_ALARM,
     order: Annotated[
-        list[str] | None, typer.Option(help="Order per revolution of the input; repeat as needed. 2, 1 and 4, if not given.")
+        list[str] | None,
+        typer.Option(metavar="ORDER", help="Order per revolution of the input; repeat as needed. 2, 1 and 4, if not given."),
     ] = None,
     out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
 ) -> None:

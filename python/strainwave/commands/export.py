@@ -54,12 +54,8 @@ class Conversion(NamedTuple):
     argument: Callable[[Any], Any]
 
 
-def _model_text(file: Path | None) -> str | None:
-    """Return the text of the MJCF file of a robot; None if none is given."""
-    from strainwave.export.robot import MAX_MODEL_BYTES
-    from strainwave.files.budget import read_text
-
-    return None if file is None else read_text(file, MAX_MODEL_BYTES)
+def _itself(path: Path | None) -> Path | None:
+    return path
 
 
 def _with_binaries(platforms: list[str] | None) -> list[str] | None:
@@ -68,7 +64,9 @@ def _with_binaries(platforms: list[str] | None) -> list[str] | None:
 
 
 CONVERSIONS = {
-    "into": Conversion(Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")], _model_text),
+    "into": Conversion(
+        Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")], lambda path: path
+    ),
     "platforms": Conversion(
         Annotated[
             list[str] | None,

@@ -26,14 +26,19 @@ class FileOptions:
 
     mapping: Annotated[Path | None, typer.Option(help="TOML file with the columns of all or some files.")] = None
     column: Annotated[
-        list[str] | None, typer.Option(help="A column's name or number in the files, as speed=3; repeat as needed.")
+        list[str] | None,
+        typer.Option(metavar="NAME=COLUMN", help="A column's name or number in the files, as speed=3; repeat as needed."),
     ] = None
     unit: Annotated[
-        list[str] | None, typer.Option(help="Unit of a column whose header has none, as torque=N.m; repeat as needed.")
+        list[str] | None,
+        typer.Option(metavar="NAME=UNIT", help="Unit of a column whose header has none, as torque=N.m; repeat as needed."),
     ] = None
     constant: Annotated[
         list[str] | None,
-        typer.Option(help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed."),
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="A number that belongs to the files, as rate=500 or torque_constant='75 mN.m/A'; repeat as needed.",
+        ),
     ] = None
     side: Annotated[
         str | None, typer.Option(help="Side of a table, or of angles, whose names do not contain it: input or output.")
@@ -57,7 +62,7 @@ class FileOptions:
             ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
         """
         from strainwave.identification.reading.channels import ALIASES, CHANNELS
-        from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+        from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
         from strainwave.identification.reading.source import measurement_file
 
         side: Any = self.side
@@ -74,7 +79,6 @@ class FileOptions:
                 )
         units = pairs("--unit", self.unit, channels | names)
         constants = pairs("--constant", self.constant, set(CONSTANTS))
-        numbers = {name: constant_of(name, value) for name, value in constants.items()}
         from_file = MappingFile.read(self.mapping) if self.mapping is not None else None
         opened = {file.path: file for file in files}
 
@@ -82,7 +86,7 @@ class FileOptions:
             file = opened.get(path) or measurement_file(path)
             own = {channel: column for channel, column in columns.items() if _has(file, column)}
             of_it = {name: unit for name, unit in units.items() if name in channels or name in file.names}
-            given = FileMapping(own, of_it, constants=numbers, side=side, joint=self.joint, kind=self.kind)
+            given = FileMapping(own, of_it, constants=constants, side=side, joint=self.joint, kind=self.kind)
             return from_file.of(path).updated(given) if from_file is not None else given
 
         return of

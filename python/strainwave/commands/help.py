@@ -14,9 +14,10 @@ class Verbs(TyperGroup):
     """Verbs of the command or of one of its rooms. The examples of a verb are the section `Examples` of its docstring."""
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        command = super().get_command(ctx, cmd_name)
-        if command is not None and "\nExamples:\n" in (command.help or ""):
-            command.help, _, examples = command.help.partition("\nExamples:\n")
+        command: Any = super().get_command(ctx, cmd_name)
+        text, heading, examples = ((command and command.help) or "").partition("\nExamples:\n")
+        if heading:
+            command.help = text
             command.epilog = f"\b\nExamples:\n{indent(dedent(examples), '  ')}"  # \b: the lines stay as they are
         return command
 

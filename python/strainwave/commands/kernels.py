@@ -48,7 +48,7 @@ def compile_command(
     drive: Drive,
     jobs: Annotated[
         list[str] | None,
-        typer.Option("--job", help="A job of a kernel, as simulate_many; repeat as needed. All, if not given."),
+        typer.Option("--job", metavar="JOB", help="A job of a kernel, as simulate_many; repeat as needed. All, if not given."),
     ] = None,
 ) -> None:
     """Compile the kernels of a drive ahead of its runs.

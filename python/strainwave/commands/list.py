@@ -64,7 +64,9 @@ def description(name: str) -> str:
     """Return the documentation of a model."""
     from inspect import cleandoc
 
-    return cleandoc(str(models()[name].__doc__))
+    from strainwave.report.articles import in_words
+
+    return in_words(cleandoc(str(models()[name].__doc__)))
 
 
 def _named(kind: str, names: Any, part: str) -> list[str]:

@@ -40,7 +40,7 @@ def orders(
     from strainwave.files.gear_set import catalogue
     from strainwave.files.writing import write_folder
     from strainwave.identification.reading.mapping import check_constant
-    from strainwave.identification.reading.source import MeasurementFile
+    from strainwave.identification.reading.source import measurement_files
     from strainwave.messages import one_line
     from strainwave.orders.torque_ripple import MAX_ORDER
     from strainwave.questions import QuestionError
@@ -56,7 +56,7 @@ def orders(
         raise ValueError(
             f"{sets[0]} is a gear set; orders are found in files alone: leave it out, and give --ratio if it is known"
         )
-    runs = [run for path in paths for run in MeasurementFile(path).runs]
+    runs = [run for file in measurement_files(paths).files for run in file.runs]
     with in_turn(None, len(runs)) as turn:
         found = []
         for run in runs:

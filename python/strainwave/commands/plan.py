@@ -15,23 +15,32 @@ def plan(
         str, typer.Argument(help="A set by name, as hfuc-25-100, a gear file, or a data sheet: what is known so far.")
     ],
     want: Annotated[
-        list[str], typer.Option(help="A number to know, as gear.friction_input.viscous, or a part; repeat as needed.")
+        list[str],
+        typer.Option(metavar="PATH", help="A number to know, as gear.friction_input.viscous, or a part; repeat as needed."),
     ],
     experiment: Annotated[
-        list[str] | None, typer.Option(help="What can be made: friction, torsion; repeat as needed. Both, if not given.")
+        list[str] | None,
+        typer.Option(metavar="KIND", help="What can be made: friction, torsion; repeat as needed. Both, if not given."),
     ] = None,
     unknown: Annotated[
         list[str] | None,
-        typer.Option(help="Parameters that are not known either; if not given, the ones in the same part as the wanted ones."),
+        typer.Option(
+            metavar="PATH",
+            help="Parameters that are not known either; if not given, the ones in the same part as the wanted ones.",
+        ),
     ] = None,
     noise: Annotated[
         list[str] | None,
-        typer.Option(help="Standard deviation in SI units, as friction=0.002; also torsion, input_torsion. Repeat as needed."),
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Standard deviation in SI units, as friction=0.002; also torsion, input_torsion. Repeat as needed.",
+        ),
     ] = None,
     resolution: Annotated[
         list[str] | None,
         typer.Option(
-            help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle."
+            metavar="NAME=VALUE",
+            help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle.",
         ),
     ] = None,
     minutes: Annotated[float, numeric("What all measurements may take together.")] = 30.0,

@@ -199,10 +199,14 @@ def analyse(
     ] = None,
     positions: Annotated[str | None, typer.Option(help="Position of each FILE in degrees, as 0,60,120.")] = None,
     column: Annotated[
-        list[str] | None, typer.Option(help="A column's name in FILE, as twist='Angle out'; repeat as needed.")
+        list[str] | None,
+        typer.Option(metavar="NAME=COLUMN", help="A column's name in FILE, as twist='Angle out'; repeat as needed."),
     ] = None,
     unit: Annotated[
-        list[str] | None, typer.Option(help="Unit of a column of FILE whose header has none, as torque=N.m; repeat as needed.")
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=UNIT", help="Unit of a column of FILE whose header has none, as torque=N.m; repeat as needed."
+        ),
     ] = None,
     out: Annotated[
         Path | None, folder("Folder for the results; FOLDER/analysis, or out/rig for several, if not given.")
@@ -300,19 +304,21 @@ def influence(
     ] = None,
     loop: Annotated[
         list[str] | None,
-        typer.Option(help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop."),
+        typer.Option(
+            metavar="FILE,NAME=VALUE",
+            help="A measured loop, and what was varied, as cold.csv,temperature=5 degC; once for each loop.",
+        ),
     ] = None,
     out: Annotated[Path, folder("Folder for report.html.")] = Path("out/rig-influence"),
 ) -> None:
-    r"""Test a series of torsion loops for trends.
+    """Test a series of torsion loops for trends.
 
     Prints the dependence of area, width and stiffness on torque level, temperature, preload, ratio, modulus, cycles and hours,
     each with its 95 % interval and its probabilities.
 
     Examples:
-        strainwave rig influence --loop "cold.csv,temperature=5 degC" \
-          --loop "warm.csv,temperature=40 degC"
         strainwave rig influence --measured series.csv
+        strainwave rig influence --measured series.csv --out trends
     """
     from strainwave.files.writing import write_folder
     from strainwave.report.influence import influence_report, summary

@@ -15,7 +15,9 @@ def show(
     torque: Annotated[
         float | None, numeric("Torque of the output in N.m: show the positioning error to be expected under it.")
     ] = None,
-    run: Annotated[list[Path] | None, typer.Option(help="A recording to hold against the ratings; repeat as needed.")] = None,
+    run: Annotated[
+        list[Path] | None, typer.Option(metavar="FILE", help="A recording to hold against the ratings; repeat as needed.")
+    ] = None,
 ) -> None:
     """Show the numbers of a gear or drive, or describe a model.
 

@@ -27,9 +27,12 @@ def simulate(
     dt: Annotated[float | None, numeric("Largest step in s, 0.0002 if not given.")] = None,
     sample: Annotated[float, numeric("Distance of samples in s.")] = 1e-3,
     tolerance: Annotated[float | None, numeric("Relative error, as 1e-8: steps as long as it allows, instead of --dt.")] = None,
-    record: Annotated[list[str] | None, typer.Option(help="A column to keep; repeat as needed. All, if not given.")] = None,
+    record: Annotated[
+        list[str] | None, typer.Option(metavar="COLUMN", help="A column to keep; repeat as needed. All, if not given.")
+    ] = None,
     changed: Annotated[
-        list[str] | None, typer.Option("--set", help="Another number, in SI units, as load.inertia=0.6; repeat as needed.")
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE", help="Another number, in SI units, as load.inertia=0.6; repeat as needed."),
     ] = None,
 ) -> None:
     """Run a drive through a scenario.

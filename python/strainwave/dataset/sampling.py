@@ -13,7 +13,6 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Words = NDArray[np.uint64]
 
-MAX_SOBOL_POINTS = 1 << 32  # the resolution of a coordinate, 2^-32
 SOBOL_BITS = 32
 FEISTEL_ROUNDS = 4  # from this number on the permutation is pseudo-random (Luby and Rackoff 1988)
 

@@ -426,17 +426,20 @@ def _verdict(
             f"{wave.needed:.3g} {unit} are needed: a fault may be there; record under more load, longer or with less noise"
         )
     if comparison is not None and comparison.changes:
-        low = min(each.limit / max(each.baseline, 1e-300) for each in comparison.changes)
+        sizes = [(each.limit, each.detectable, max(each.baseline, 1e-300)) for each in comparison.changes]
+        low, seen = (100.0 * min(size[place] / size[2] for size in sizes) for place in (0, 1))
         return "no change found", (
             f"none of {len(comparison.changes)} amplitudes differs from the baseline by more than it varies; the smallest "
-            f"change that would be an alarm is {100.0 * low:.3g} % of an amplitude"
+            f"change that would be an alarm is {low:.3g} % of an amplitude; from {seen:.3g} % on, a true change is one with "
+            "probability 0.9"
         )
     if has_baseline:
         why = [*remarks, *(() if comparison is None else comparison.remarks)]
         return "not comparable", why[0] if why else "no block of the recording has conditions that the baseline contains"
     count = sum(line.kind in ("order", "either") and not line.joint for line in found.lines)
     if count or any(each.detected for each in orders):
-        return "lines found", f"{max(count, sum(each.detected for each in orders))} lines repeat with the angle of this joint"
+        lines = max(count, sum(each.detected for each in orders))
+        return "lines found", f"{lines} {'line repeats' if lines == 1 else 'lines repeat'} with the angle of this joint"
     return "no line found", "no line stands out of the noise, which is no proof of health"
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 HEIGHT = 2.8  # inches
 SIGMA_OF_95_PERCENT = 1.96
+BAR_COLOURS = ("muted", "model")  # of kinds of bars, the last one the strongest
 BAR_HEIGHT, MARGIN_HEIGHT = 0.34, 1.2  # inches
 
 
@@ -75,12 +76,12 @@ def histograms_figure(title: str, quantities: Sequence[Series]) -> Figure:
 
 def bars_figure(title: str, names: Sequence[str], of_names: Mapping[str, Sequence[float]], unit: str) -> Figure:
     """Return the figure of horizontal bars: for each name one of each kind, the first name on top."""
-    colours = ("muted", "model")
     with marks.new_figure(MARGIN_HEIGHT + BAR_HEIGHT * len(names), title) as figure:
         axes = figure.subplots()
         width = 0.8 / len(of_names)
-        for place, ((kind, values), colour) in enumerate(zip(of_names.items(), colours, strict=False)):
-            axes.barh(np.arange(len(names)) + (place - 0.5) * width, values, height=width, color=LIGHT[colour], label=kind)
+        for place, (kind, values) in enumerate(of_names.items()):
+            middle = np.arange(len(names)) + (place - 0.5 * (len(of_names) - 1)) * width
+            axes.barh(middle, values, height=width, color=LIGHT[BAR_COLOURS[place - len(of_names)]], label=kind)
         axes.set_yticks(range(len(names)), list(names), fontsize="small")
         axes.set_ylim(len(names) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")

@@ -19,6 +19,7 @@ from strainwave import Drive, Gear, arguments, friction, hysteresis, loads, moto
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
+from strainwave.questions import NUMBER, Answer, QuestionError
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import simulate
@@ -275,10 +276,12 @@ def _max_torque(gear_set: GearSet, given: float | None) -> float:
     found = max_torque_of(gear_set, given)
     if found is not None:
         return found
-    raise ValueError(
-        f"{gear_set.name} has no rating {MAX_TORQUES[0]}, so the range of its torsion is not known; give the largest torque at "
-        "the output: --max-torque 100, in Python max_torque=100.0"
+    largest = Answer(
+        "the largest torque at the output is known, in Python as max_torque",
+        files=("--max-torque", NUMBER),
+        numbers={"max_torque": "largest torque at the output [N.m]"},
     )
+    raise QuestionError(f"{gear_set.name} has no rating {MAX_TORQUES[0]}, so the range of its torsion is not known", [largest])
 
 
 def _max_speed(gear_set: GearSet) -> float:

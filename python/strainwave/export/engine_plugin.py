@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import resources
 from pathlib import Path
@@ -27,11 +28,12 @@ from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.internal_step import internal_step
 from strainwave.export.mujoco import friction_attributes, inertia_on_a_hinge
 from strainwave.export.names import checked_name
-from strainwave.export.robot import Element, Robot, child, kept, timestep_of, written
+from strainwave.export.robot import Element, Robot, Twist, child, gears_of_joints, kept, timestep_of, written
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
-from strainwave.messages import one_line
+from strainwave.messages import listed, one_line
 from strainwave.simulation.signals import load_input
+from strainwave.tuning.loss import ExportLoss
 
 Array = NDArray[np.float64]
 MIN_VERSION = 4_000_000  # of MuJoCo, as mjVERSION_HEADER counts
@@ -58,8 +60,8 @@ numpy.save(out, rows)
 def mujoco_plugin(
     drive: Drive | GearSet,
     *,
-    into: str | None = None,
-    joint: str | None = None,
+    into: str | Path | None = None,
+    joint: str | Mapping[str, GearSet | str | Path] | None = None,
     keep: str | None = None,
     load_inertia: float | None = None,
     max_torque: float | None = None,
@@ -74,8 +76,9 @@ def mujoco_plugin(
 
     Args:
         drive: a drive, or a gear set with one. A body of MuJoCo takes the place of its load
-        into: text of the MJCF file of a robot; a model with an inertia alone if not given
-        joint: name of a hinge of the robot, which becomes the output
+        into: MJCF file of a robot, or its text; a model with an inertia alone if not given
+        joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another drive as
+            "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a drive for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the drive's, as "damping,armature"
         load_inertia: of the model with an inertia alone [kg.m²]; by default that of the load
         max_torque: at the output [N.m], up to which the stiffness limits the timestep; by default the peak torque of the
@@ -99,37 +102,116 @@ def mujoco_plugin(
     >>> list(found.files)  # doctest: +SKIP
     ['gear.so', 'gear.xml']
     """
-    model, drive = drive, drive_of(drive)
     if (into is None) != (joint is None):
-        raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
-    mode = command_mode(drive, command)
+        raise ValueError("into and joint belong together: the file of a robot, and one or several of its hinges")
     checked_name(name, "MuJoCo", hyphens=True)
-    largest = max_torque_of(model, max_torque) or 0.0
+    gear_set = drive if isinstance(drive, GearSet) else GearSet.of(drive_of(drive), name=name, source="given")
     include, version = installed_mujoco()
-    step = internal_step(drive, step)
-    coupled = CoupledDrive.of(drive, largest)
-    inertia = _inertia(drive, load_inertia, into is None)
-    alone = _alone(coupled, inertia, mode, name)
-    text, remarks = (written(alone), ()) if into is None else _attached(into, str(joint), coupled, mode, name, kept(keep))
-    suffix = SUFFIXES[sys.platform]
-    content = compiled(coupled.sources(f"strainwave.{name}", step, "mujoco_plugin.cpp"), include)
-    numbers = {
-        "output_stiffness": (coupled.stiffness, "N.m/rad"),
-        "output_hold": (coupled.hold, "N.m"),
-        "longest_timestep": (coupled.max_timestep(inertia), "s"),
-        "inertia_there": (inertia, "kg.m2"),
-        "internal_step": (step, "s"),
-    }
-    lost = losses(drive, inertia, step, timestep_of(alone), "timestep", partial(_run_in_mujoco, content, written(alone)))
+    if into is None or joint is None:
+        plugins = [_Plugin.of(gear_set, name, max_torque, command, step)]
+        inertia = _inertia(plugins[0].drive, load_inertia, is_needed=True)
+        text, remarks = written(_alone(plugins[0], inertia)), list[str]()
+    else:
+        robot = Robot.of(into)
+        gears = gears_of_joints(robot, joint, gear_set)
+        plugins = [
+            _Plugin.of(each, name if number == 1 else f"{name}_{number}", max_torque, command, step)
+            for number, each in enumerate(_distinct(gears.values()), start=1)
+        ]
+        plugin_of = {shaft: next(each for each in plugins if each.gear_set is gear) for shaft, gear in gears.items()}
+        twists = list[Twist]()
+        for shaft, plugin in plugin_of.items():
+            list(robot.replace_friction(robot.hinge(shaft), plugin.hold(robot.root), kept(keep)))
+            twists.append(Twist("", shaft, 1.0, plugin.coupled.stiffness, plugin.coupled.damping))
+        robot, remarks = Robot.stable(into, robot.longest_timestep(twists))
+        for shaft, plugin in plugin_of.items():
+            remarks += _attach(robot, shaft, plugin, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
+        text = written(robot.root)
+    files: dict[str, str | bytes] = {}
+    numbers, losses_of_runs, left_out = dict[str, tuple[float, str]](), list[ExportLoss](), list[str]()
+    for plugin in plugins:
+        inertia = _inertia(plugin.drive, load_inertia, is_needed=False)
+        alone, prefix = _alone(plugin, inertia), f"{plugin.name}: " if len(plugins) > 1 else ""
+        content = compiled(plugin.coupled.sources(f"strainwave.{plugin.name}", plugin.step, "mujoco_plugin.cpp"), include)
+        files[plugin.file] = content
+        numbers |= {prefix + key: value for key, value in plugin.numbers(inertia).items()}
+        run = partial(_run_in_mujoco, content, written(alone))
+        found = losses(plugin.drive, inertia, plugin.step, timestep_of(alone), "timestep", run)
+        losses_of_runs += [replace(each, quantity=prefix + each.quantity) for each in found]
+        left_out += [prefix + each for each in _left_out(plugin.drive)]
+        remarks += _remarks(plugin, version, content)
     return Exported(
         "MuJoCo plugin",
-        model.name if isinstance(model, GearSet) else name,
-        {f"{name}{suffix}": content, "gear.xml": text},
+        listed(dict.fromkeys(each.gear_set.name for each in plugins)),
+        files | {"gear.xml": text},
         numbers,
-        tuple(lost),
-        tuple(_left_out(drive)),
-        (*remarks, *_remarks(name + suffix, version, mode, content)),
+        tuple(losses_of_runs),
+        tuple(left_out),
+        (*remarks, "the error is of first order in the timestep: halve it and compare"),
     )
+
+
+@dataclass(frozen=True)
+class _Plugin:
+    """A drive and the plugin of it, which any number of joints have.
+
+    Attributes:
+        name: of the library, and of the plugin after "strainwave."
+        gear_set: the drive with its ratings
+        drive: of the set
+        coupled: the drive with its output moved by MuJoCo
+        command: "held" or "followed"
+        step: largest internal step [s]
+    """
+
+    name: str
+    gear_set: GearSet
+    drive: Drive
+    coupled: CoupledDrive
+    command: Command
+    step: float
+
+    @classmethod
+    def of(cls, gear_set: GearSet, name: str, max_torque: float | None, command: Command | None, step: float | None) -> _Plugin:
+        """Return the plugin of a set with a drive; the arguments are those of `mujoco_plugin`."""
+        drive = drive_of(gear_set)
+        coupled = CoupledDrive.of(drive, max_torque_of(gear_set, max_torque) or 0.0)
+        return cls(name, gear_set, drive, coupled, command_mode(drive, command), internal_step(drive, step))
+
+    @property
+    def file(self) -> str:
+        """Name of the library."""
+        return f"{self.name}{SUFFIXES[sys.platform]}"
+
+    def hold(self, root: Element) -> dict[str, str]:
+        """Return the attributes of a joint of a model for the dry friction at the output."""
+        return friction_attributes(ShaftFriction(dry=self.coupled.hold, viscous=0.0), timestep_of(root))
+
+    def add(self, root: Element, shaft: Element, name: str) -> None:
+        """Add the drive to a model, at a joint of it; `name` begins that of the actuator."""
+        plugin = {"plugin": f"strainwave.{self.name}"}
+        extension = child(root, "extension")
+        if all(each.get("plugin") != plugin["plugin"] for each in extension):
+            ElementTree.SubElement(extension, "plugin", plugin)
+        motor = {"name": f"{name}_motor", "joint": shaft.attrib["name"], **plugin}
+        ElementTree.SubElement(
+            ElementTree.SubElement(child(root, "actuator"), "plugin", motor), "config", key="command", value=self.command
+        )
+
+    def numbers(self, inertia: float) -> dict[str, tuple[float, str]]:
+        """Return what the plugin states, with the longest timestep before an inertia [kg.m²]."""
+        return {
+            "output_stiffness": (self.coupled.stiffness, "N.m/rad"),
+            "output_hold": (self.coupled.hold, "N.m"),
+            "longest_timestep": (self.coupled.max_timestep(inertia), "s"),
+            "inertia_there": (inertia, "kg.m2"),
+            "internal_step": (self.step, "s"),
+        }
+
+
+def _distinct(gears: Iterable[GearSet]) -> list[GearSet]:
+    """Return gears that are different objects, in their order."""
+    return list({id(each): each for each in gears}.values())
 
 
 def installed_mujoco() -> tuple[Path, str]:
@@ -182,41 +264,23 @@ def _inertia(drive: Drive, given: float | None, is_needed: bool) -> float:
     return inertia or float(loads.Inertia().inertia)
 
 
-def _alone(coupled: CoupledDrive, inertia: float, command: Command, name: str) -> Element:
-    timestep = min(DEFAULT_TIMESTEP, MAX_STABLE_SHARE * coupled.max_timestep(inertia))
-    root, _, shaft = inertia_on_a_hinge(inertia, timestep, name)
-    _add_plugin(root, shaft, command, name)
-    shaft.attrib.update(_hold(coupled, root))
+def _alone(plugin: _Plugin, inertia: float) -> Element:
+    timestep = min(DEFAULT_TIMESTEP, MAX_STABLE_SHARE * plugin.coupled.max_timestep(inertia))
+    root, _, shaft = inertia_on_a_hinge(inertia, timestep, plugin.name)
+    plugin.add(root, shaft, plugin.name)
+    shaft.attrib.update(plugin.hold(root))
     return root
 
 
-def _attached(
-    model: str, joint: str, coupled: CoupledDrive, command: Command, name: str, keep: Collection[str] = ()
-) -> tuple[str, tuple[str, ...]]:
-    """Return a robot's model with a drive at one of its joints, and remarks on what it changes."""
-    robot = Robot.of(model)
+def _attach(robot: Robot, joint: str, plugin: _Plugin, name: str, keep: Collection[str]) -> list[str]:
+    """Put a drive at a joint of a robot, and return remarks on what that changes."""
     shaft = robot.hinge(joint)
-    remarks = [*robot.replace_friction(shaft, _hold(coupled, robot.root), keep), *robot.others_on(joint, name)]
-    _add_plugin(robot.root, shaft, command, name)
+    remarks = [*robot.replace_friction(shaft, plugin.hold(robot.root), keep), *robot.others_on(joint, name)]
+    plugin.add(robot.root, shaft, name)
     for key in robot.root.findall("keyframe/key"):
         if key.get("ctrl"):
             key.set("ctrl", f"{key.attrib['ctrl']} 0")
-    return written(robot.root), tuple(remarks)
-
-
-def _hold(coupled: CoupledDrive, root: Element) -> dict[str, str]:
-    """Return the attributes of a joint for the dry friction at the output of a drive."""
-    return friction_attributes(ShaftFriction(dry=coupled.hold, viscous=0.0), timestep_of(root))
-
-
-def _add_plugin(root: Element, shaft: Element, command: Command, name: str) -> None:
-    """Add a drive to a model, at a joint of it."""
-    plugin = f"strainwave.{name}"
-    ElementTree.SubElement(child(root, "extension"), "plugin", plugin=plugin)
-    motor = ElementTree.SubElement(
-        child(root, "actuator"), "plugin", {"name": f"{name}_motor", "joint": shaft.attrib["name"], "plugin": plugin}
-    )
-    ElementTree.SubElement(motor, "config", key="command", value=command)
+    return remarks
 
 
 def _run_in_mujoco(content: bytes, model: str, command: float, angle: float, timestep: float, every: int) -> Array:
@@ -243,11 +307,10 @@ def _left_out(drive: Drive) -> Iterator[str]:
     yield "the temperature around the drive, which is constant"
 
 
-def _remarks(file: str, version: str, mode: Command, content: bytes) -> Iterator[str]:
-    yield "the error is of first order in the timestep: halve it and compare"
-    yield f"the command is {mode} from timestep to timestep"
-    yield f'load it before the model: mujoco.mj_loadPluginLibrary("./{file}")'
-    yield f"{file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"
+def _remarks(plugin: _Plugin, version: str, content: bytes) -> Iterator[str]:
+    yield f"the command is {plugin.command} from timestep to timestep"
+    yield f'load it before the model: mujoco.mj_loadPluginLibrary("./{plugin.file}")'
+    yield f"{plugin.file} is for MuJoCo {version} alone, {len(content) / 1e3:.0f} kB; export it again after an update of MuJoCo"
 
 
 MUJOCO_PLUGIN = Form(

@@ -175,7 +175,7 @@ def _urdf(values: Mapping[str, str], elements: GearElements, name: str) -> str:
   </joint>
   <transmission name="joint_transmission">
     <type>transmission_interface/SimpleTransmission</type>
-    <joint name="joint"/>
+    <joint name="joint"><hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface></joint>
     <actuator name="motor">
       <mechanicalReduction>{elements.ratio!r}</mechanicalReduction>
     </actuator>

@@ -19,9 +19,10 @@ import numpy as np
 from strainwave import Drive, Gear, arguments, loads, motor
 from strainwave.export.elements import GearElements, ShaftFriction, Spring
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.robot import Element, Robot, child, kept, written
+from strainwave.export.robot import Element, Robot, Twist, child, gears_of_joints, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed
+from strainwave.tuning.compensate import MAX_MEMBERS
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
 
@@ -44,7 +45,7 @@ def mjcf(
     *,
     max_torque: float | None = None,
     load_inertia: float | None = None,
-    into: str | None = None,
+    into: str | Path | None = None,
     joint: str | Mapping[str, GearSet | Drive | Gear | str | Path] | None = None,
     keep: str | None = None,
     draws: int = 0,
@@ -57,7 +58,7 @@ def mjcf(
         drive: a gear, a drive or a set of one, or the name or path of a file
         max_torque: at the output, up to which the torsion is fitted [N.m]; by default the peak torque of the ratings
         load_inertia: at the output about its axis [kg.m²]; by default that of the load
-        into: text of the MJCF file of a robot; a model with an inertia alone if not given
+        into: MJCF file of a robot, or its text; a model with an inertia alone if not given
         joint: name of a hinge of the robot, which becomes the output; several as "hip,knee"; one with another gear as
             "knee=mine.toml"; "all" for all hinges that are not listed. In Python also a gear for each name
         keep: what the joint keeps of its own damping, frictionloss and armature besides the gear's, as "damping,armature"
@@ -83,13 +84,7 @@ def mjcf(
     if (into is None) != (joint is None):
         raise ValueError("into and joint belong together: the file of a robot, and the name of one of its hinges")
     if into is not None and joint is not None:
-        robot = Robot.of(into)
-        gears = _gears_of_joints(robot, joint, gear_set)
-        exports = {
-            shaft: _with_elements(robot, shaft, each, max_torque, name if len(gears) == 1 else f"{shaft}_{name}", kept(keep))
-            for shaft, each in gears.items()
-        }
-        text = written(robot.root)
+        text, exports = _in_robot(into, joint, gear_set, max_torque, name, kept(keep))
     else:
         elements = GearElements.of_set(gear_set, max_torque)
         exports = {"": (gear_set, elements, [])}
@@ -99,40 +94,41 @@ def mjcf(
         raise ValueError(f"draws = {draws} are made for one joint; {listed(exports)} have gears")
     if draws:
         ((own, elements, _),) = exports.values()
-        files["randomisation.json"] = _randomisation(own, elements, arguments.whole("draws", draws, 2), seed, name)
+        files["randomisation.json"] = _randomisation(own, elements, arguments.whole("draws", draws, 2, MAX_MEMBERS), seed, name)
     losses, left_out, remarks = _of_all(exports)
     remarks += ("dry friction is a constraint in MuJoCo, of first order in its timestep: halve it and compare",)
     names = listed(dict.fromkeys(each.name for each, _, _ in exports.values()))
     return Exported("mjcf", names, files, {}, losses, left_out, remarks)
 
 
-def _gears_of_joints(
-    robot: Robot, joint: str | Mapping[str, GearSet | Drive | Gear | str | Path], default: GearSet
-) -> dict[str, GearSet]:
-    """Return the gear of each joint that gets one, in the order of the robot.
+def _in_robot(
+    into: str | Path,
+    joint: str | Mapping[str, GearSet | Drive | Gear | str | Path],
+    gear_set: GearSet,
+    max_torque: float | None,
+    name: str,
+    keep: Collection[str],
+) -> tuple[str, dict[str, Part]]:
+    """Return a robot with gears as text, and the gear of each joint. The arguments are those of `mjcf`."""
+    robot = Robot.of(into)
+    gears = gears_of_joints(robot, joint, gear_set)
+    known = {id(each): GearElements.of_set(each, max_torque) for each in gears.values()}
+    names = {shaft: name if len(gears) == 1 else f"{shaft}_{name}" for shaft in gears}
 
-    Raises:
-        ValueError: the robot has no such hinge
-    """
-    if isinstance(joint, Mapping):
-        chosen = {name: gear_set_of(gear) for name, gear in joint.items()}
-    else:
-        entries = [each.strip().partition("=") for each in joint.split(",")]
-        chosen = {name: GearSet.read(gear) if gear else default for name, _, gear in entries}
-    others = chosen.pop("all", None)
-    hinges = list(robot.hinges())
-    for name in chosen:
-        robot.hinge(name)
-    gears = {name: chosen.get(name, others) for name in hinges}
-    return {name: gear for name, gear in gears.items() if gear is not None}
+    def attached(model: Robot) -> dict[str, Part]:
+        return {
+            shaft: (each, known[id(each)], attach(model, shaft, known[id(each)], each.motor, name=names[shaft], keep=keep))
+            for shaft, each in gears.items()
+        }
 
-
-def _with_elements(
-    robot: Robot, joint: str, gear_set: GearSet, max_torque: float | None, name: str, keep: Collection[str]
-) -> Part:
-    """Add the gear of a set behind a joint of a robot, and return it with its elements and remarks."""
-    elements = GearElements.of_set(gear_set, max_torque)
-    return gear_set, elements, attach(robot, joint, elements, gear_set.motor, name=name, keep=keep)
+    twists = [
+        Twist(f"{names[shaft]}_input", shaft, each.ratio, stiffness_at_rest(each), each.damping)
+        for shaft, (_, each, _) in attached(robot).items()
+    ]
+    robot, remarks = Robot.stable(into, robot.longest_timestep(twists))
+    exports = attached(robot)
+    next(iter(exports.values()))[2].extend(remarks)
+    return written(robot.root), exports
 
 
 def _of_all(exports: Mapping[str, Part]) -> tuple[tuple[ExportLoss, ...], tuple[str, ...], tuple[str, ...]]:
@@ -243,18 +239,11 @@ def attach(
     """
     shaft = robot.hinge(joint)
     remarks = list(robot.replace_friction(shaft, friction_attributes(elements.at_output, robot.timestep), keep))
-    link = robot.parents[shaft]
+    link = robot.body_of(shaft)
     before = len(robot.root.findall("actuator/*"))
     rotor = add_gear(robot, link, shaft, elements, actuator, name)
-    added = len(robot.root.findall("actuator/*")) - before
-    remarks += [*robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
-    # Semi-implicit Euler with explicit damping is stable for k dt^2 + 2 c dt < 4 J.
-    lightest = 0.25 * stiffness_at_rest(elements) * robot.timestep**2 + 0.5 * elements.damping * robot.timestep
-    remarks.append(
-        f"at the timestep of {robot.timestep:g} s the gear needs {lightest:.2g} kg.m2 or more about {joint}, by links or "
-        "armature; with less, shorten the timestep"
-    )
-    return remarks
+    added = robot.root.findall("actuator/*")[before:]
+    return [*remarks, *robot.extended_keyframes(rotor, shaft, elements.ratio, added), *robot.others_on(joint, name)]
 
 
 def stiffness_at_rest(elements: GearElements) -> float:

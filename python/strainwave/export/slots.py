@@ -26,7 +26,7 @@ from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
 from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, torque_constant
-from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MEASUREMENTS, assumed_numbers
+from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MAX_MEMBERS, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
 from strainwave.tuning.steady_torque import steady_torque
@@ -234,7 +234,7 @@ def slot(
             arguments.number("travel", travel, "rad", low=0.0),
             arguments.number("period", period, "s", low=0.0),
             arguments.number("temperature", temperature, "K", low=MIN_TEMPERATURE),
-            arguments.whole("members", members, MIN_MEMBERS),
+            arguments.whole("members", members, MIN_MEMBERS, MAX_MEMBERS),
             arguments.whole("seed", seed, 0),
         )
     )

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -436,6 +437,11 @@ def save(model: GearSet | Gear | Drive | FittedModel, path: str | Path, **naming
     ...     load(f"{folder}/mine.toml").damping
     0.30000000000000004
     """
+    if not isinstance(model, GearSet) and (missing := [name for name in ("name", "source") if name not in naming]):
+        raise TypeError(
+            f"{' and '.join(missing)} must be given: a {type(model).__name__.lower()} does not have them, as in save(gear, "
+            'path, name="mine", source="measured on my rig")'
+        )
     gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
     if gear_set is model and naming:
         name, given = min(naming.items())
@@ -528,10 +534,11 @@ def _file(name_or_path: str | Path) -> Path:
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
-    if name_or_path not in files:
-        near = difflib.get_close_matches(name_or_path.lower(), files)
+    name = re.sub(r"[\s_]+", "-", name_or_path.strip().casefold())  # catalogues print HFUC-25-100
+    if name not in files:
+        near = difflib.get_close_matches(name, files)
         raise ValueError(
             f"no set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
             'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
-    return files[name_or_path]
+    return files[name]

@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments, typeset
+from strainwave.files.labels import Label, label_of
 from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+LISTED_COLUMNS = 5  # in one line, and in the picture of a notebook
 GENERATED_TITLE = "simulation"  # first word of the titles that simulations give their recordings
 
 
@@ -39,8 +41,10 @@ class Recording(Pictured):
     """Named series of equal length, each with its unit.
 
     Args:
-        columns: the values of each series, in order, shape (n,), n >= 1; copied unless they are read-only already
-        units: the unit of each series, as `strainwave.files.units.check` knows it
+        columns: the values of each series, in order, shape (n,), n >= 1, or a table of pandas; copied unless they are read-only
+            already
+        units: the unit of each series, as `strainwave.files.units.check` knows it; by default those of a table of pandas, in
+            its names, as `torque [N.m]`, or as `to_frame` writes them
         title: what was recorded, one line
 
     A column called `time` must strictly increase. Rows are counted from 0.
@@ -59,7 +63,16 @@ class Recording(Pictured):
     units: Mapping[str, str]
     title: str
 
-    def __init__(self, columns: Mapping[str, ArrayLike], units: Mapping[str, str], title: str = "") -> None:
+    def __init__(
+        self,
+        columns: Mapping[str, ArrayLike] | pandas.DataFrame,
+        units: Mapping[str, str] | None = None,
+        title: str = "",
+    ) -> None:
+        if hasattr(columns, "attrs"):  # of pandas
+            columns, units = _of_frame(columns, units)
+        elif units is None:
+            raise TypeError('units must be given: the unit of each column, as {"time": "s"}')
         _check_names(columns, units)
         if arguments.text("title", title) and not title.isprintable():
             raise ValueError(f"title {shortened(title)} must be one line of text")
@@ -127,9 +140,16 @@ class Recording(Pictured):
 
     def _headline(self) -> str:
         span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
-        series = ", ".join(f"{name} [{unit}]" for name, unit in self.units.items())
+        more = len(self.names) - LISTED_COLUMNS
+        series = ", ".join(f"{name} [{self.units[name]}]" for name in self.names[:LISTED_COLUMNS])
+        series += f" and {more} more" if more > 0 else ""
         title = f'"{self.title}": ' if self._heading else ""
         return f"{title}{len(self)} samples{span}; {series}"
+
+    def _picture(self) -> Figure | None:
+        """Return the figure of the first columns that change."""
+        changing = [name for name in self.names if name != "time" and np.ptp(self[name]) > 0.0]
+        return self.plot(changing[:LISTED_COLUMNS], self.names[0]) if changing else None
 
     def _rows(self) -> Iterator[Row]:
         for name, values in self.columns.items():
@@ -422,6 +442,14 @@ class _Fault(NamedTuple):
     column: str
     row: int
     reason: str
+
+
+def _of_frame(frame: Any, units: Mapping[str, str] | None) -> tuple[dict[str, Array], Mapping[str, str]]:
+    """Return the columns of a table of pandas, and their units."""
+    labels = [label_of(name) if isinstance(name, str) else Label(name, name, None) for name in frame.columns]
+    if units is None:
+        units = {label.name: label.unit for label in labels if label.unit is not None} | frame.attrs.get("units", {})
+    return {label.text if label.text in units else label.name: frame[label.text].to_numpy() for label in labels}, units
 
 
 def _check_names(columns: Mapping[str, ArrayLike], units: Mapping[str, str]) -> None:

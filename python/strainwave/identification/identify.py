@@ -129,9 +129,10 @@ class Identified(ComparedByFields, Pictured, Reported):
     def _rows(self) -> Iterator[Row]:
         for each in self.parameters:
             taken = each.estimate
-            yield Row(taken.label, taken.value, taken.unit, taken.sigma, each.taken_from)
+            source = each.taken_from if len(self.files) > 1 else ""
+            yield Row(taken.label, taken.value, taken.unit, taken.sigma, source)
         for file in self.files:
-            yield Row(file.name, file._headline())
+            yield Row(file.name, file.in_words)
 
     def _remarks(self) -> Iterator[str]:
         return (f"FAILED: {check.source}: {check.message}; {check.remedy}" for check in self.failed)
@@ -218,13 +219,6 @@ def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult])
         one_line(found.name), found.kind, found.channel, found.unit, found.error, found.varies, found.error, found.varies
     )
     return replace(gear_set, validation=(*gear_set.validation, own))
-
-
-def checks_of(start: GearSet, file: Recognised) -> tuple[Check, ...]:
-    """Return the checks of one file that `identify` makes of it."""
-    fits = _Fits.of(start, [file])
-    results = (*fits.results.values(), *fits.together)
-    return _checks(start, results, combine(results))
 
 
 def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:

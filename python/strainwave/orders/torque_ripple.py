@@ -115,7 +115,7 @@ class Ripple(ComparedByFields, Pictured, Reported):
         """Return a figure of amplitude over order, with the noise, what a line needs, and the lines found."""
         from strainwave.orders.pictures import draw_spectrum
 
-        with marks.new_figure(3.2, f"Ripple of {self.column.replace('_', ' ')}") as figure:
+        with marks.new_figure(3.2) as figure:
             draw_spectrum(figure, self)
         return figure
 
@@ -320,7 +320,8 @@ def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Reco
 def _remarks(shaft: Moving, found: LineSearch, record: Evenly, top: float) -> list[str]:
     remarks = []
     if shaft.outliers:
-        remarks.append(f"{shaft.outliers} samples lie far outside of the others and do not count")
+        far = "sample lies" if shaft.outliers == 1 else "samples lie"
+        remarks.append(f"{shaft.outliers} {far} far outside of the others; outliers do not count")
     if any("time" in line.rivals for line in found.lines):
         remarks.append(
             "the speed is too constant to separate order lines from time lines (mains, resonances); a second run at another "

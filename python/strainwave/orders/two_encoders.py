@@ -26,6 +26,7 @@ from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_
 from strainwave.orders.stage import MAX_FREQUENCY, Regressed, StageProblem
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
 from strainwave.presentation import Pictured, Presented, Reported, Row, counted
+from strainwave.simulation.run import Run
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -152,7 +153,7 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
         """Return a figure of the error over the record, its kinematic part and the residual."""
         from strainwave.orders.pictures import draw_error
 
-        with marks.new_figure(3.8, "Transmission error") as figure:
+        with marks.new_figure(3.8) as figure:
             draw_error(figure, self)
         return figure
 
@@ -171,8 +172,9 @@ def transmission_error(
     Args:
         recording: with `input_angle` and `output_angle`, of any zero and sense, that may wrap at each revolution; with `time`,
             if the motion is not slow; and with `joint_torque`, `torque` or `current` for the wind-up
-        ratio: input over output, if it is known; used with all its digits. Its sign is that of the recorded angles, and a
-            remark follows if that differs. If both angles are counted in joint units, the input angle is multiplied by it
+        ratio: input over output, if it is known; used with all its digits; by default of a simulation that of its drive. Its
+            sign is that of the recorded angles, and a remark follows if that differs. If both angles are counted in joint
+            units, the input angle is multiplied by it
         orders: of the input to look for [1], shape (n,)
         rate: samples per second of a recording without time [Hz]
         false_alarm: largest probability that noise makes any order significant
@@ -206,6 +208,8 @@ def transmission_error(
         raise ValueError("orders must be one series of positive numbers")
     false_alarm = arguments.probability("false_alarm", false_alarm)
     load = next((name for name in LOADS if name in recording), None)
+    if ratio is None and isinstance(recording, Run):
+        ratio = recording.end.drive.gear.kinematics.ratio
     pair = _pair(recording, load, rate)
     pair, measured = ratio_of(pair, ratio)
     size = measured.used

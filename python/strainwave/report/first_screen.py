@@ -13,7 +13,7 @@ from strainwave.identification.results.file_result import FileResult, Subject
 from strainwave.identification.results.parameter_state import ParameterState
 from strainwave.report import identify_figures as plots
 from strainwave.report.parameter_names import EFFECTS, effect_of, name_of, name_of_path
-from strainwave.typeset import number, uncertain, unit
+from strainwave.typeset import percent, quantity, uncertain_quantity
 
 PREDICTED = ("log", "friction")  # kinds of files that `predict` compares
 NEEDED: dict[Subject, str] = {  # for a picture that the first screen lacks
@@ -49,21 +49,22 @@ def numbers_by_source(found: Identified) -> dict[str, list[tuple[str, str]]]:
         taken = each.estimate
         determined.add(effect_of(taken.path))
         source = each.source if len(each.mean_of) < 2 else f"mean of {len(each.mean_of)} files"
-        words = f"{uncertain(taken.value, taken.sigma)} {unit(taken.unit)}".strip()
+        words = uncertain_quantity(taken.value, taken.sigma, taken.unit)
         rows.setdefault(f"from {source}", []).append((name_of(taken), words))
     for effect in EFFECTS:
         own = (each for each in found.states if each.state == "kept" and effect_of(each.path) == effect)
         first = next((each for each in own if each.value and each.unit != "1"), None)
         if effect not in determined and first is not None:
-            words = f"{_with_spread(first, found)} {unit(first.unit)}"
+            words = _kept(first, found)
             rows.setdefault(f"from the start set {found.start_set.name}", []).append((name_of_path(first.path), words))
     return rows
 
 
-def _with_spread(kept: ParameterState, found: Identified) -> str:
+def _kept(kept: ParameterState, found: Identified) -> str:
+    """Return a number of the start set, with the scatter of individual gears if the set states it."""
     entry = found.gear_set.sources.get(kept.path)
-    spread = entry.spread if entry is not None else None
-    return number(kept.value, 4) if spread is None else f"{number(kept.value, 4)} ± {number(100.0 * spread, 2)} %"
+    spread = "" if entry is None or entry.spread is None else f" ± {percent(entry.spread)}"
+    return f"{quantity(kept.value, kept.unit)}{spread}"
 
 
 def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:

@@ -12,6 +12,7 @@ import numpy as np
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import AGREEMENT
+from strainwave.identification.checks.shape import has_small_shape
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
@@ -25,12 +26,14 @@ from strainwave.identification.results.combined_parameter import (
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
+from strainwave.messages import listed
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows
 from strainwave.report.first_screen import next_commands, not_determined, numbers_by_source, pictures
 from strainwave.report.page import render
 from strainwave.report.parameter_names import EFFECTS, OTHER, effect_of, name_of
 from strainwave.report.provenance import Provenance
+from strainwave.statistics.residuals import rms
 from strainwave.typeset import fixed, interval, number, percent, plain_symbols, quantity, uncertain, uncertain_quantity, unit
 
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
@@ -100,6 +103,8 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
+    if shapes := [quantity(check.value, check.unit) for check in found.checks if has_small_shape(check)]:
+        parts.append(f"what the model leaves has a shape of RMS {listed(shapes)}")
     if found.unchecked:
         parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
     sentence = "; ".join(parts)
@@ -166,8 +171,9 @@ def _card(result: FileResult, anchor: str) -> dict[str, Any]:
 
 def _caption(result: FileResult, picture: Picture) -> str:
     curves = picture.curves
-    error, of = float(np.sqrt(np.mean(residual_of(curves) ** 2))), curves.unit(curves.names[1])
-    words = [f"Model: {picture.model or result.model}. Root mean square of what is left: {quantity(error, of)}."]
+    of, words = curves.unit(curves.names[1]), [f"Model: {picture.model or result.model}."]
+    if result.held_out is None or result.held_out.unit != of:  # else the error on data held out stands beside it
+        words.append(f"RMS error {quantity(rms(residual_of(curves)), of)}.")
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
     if "held_out" in curves and curves["held_out"].any():

@@ -23,8 +23,11 @@ POINTS = 200  # of a branch
 
 def gear_figure(gear: Gear, title: str) -> Figure:
     """Return the figure of a gear: the loop of twist over torque, and friction at the input over speed."""
-    torque = np.concatenate([_between(0.0, 1.0), _between(1.0, -1.0), _between(-1.0, 1.0)]) * _largest_torque(gear)
-    twist = np.asarray(gear.twist(torque))
+    beginning = np.linspace(0.0, 1.0, POINTS)
+    loop_of_torque = np.concatenate([np.linspace(1.0, -1.0, POINTS), np.linspace(-1.0, 1.0, POINTS)])
+    largest = _largest_torque(gear)
+    torque = largest * loop_of_torque
+    twist = np.asarray(gear.twist(largest * np.concatenate([beginning, loop_of_torque])))[POINTS:]
     speed = np.linspace(0.005 * FASTEST, FASTEST, POINTS)
     with marks.new_figure(4.2, title) as figure:
         loop, friction = figure.subplots(2, 1)
@@ -34,10 +37,6 @@ def gear_figure(gear: Gear, title: str) -> Figure:
         marks.label_axes(loop, "twist", "rad", "torque of the output", "N.m")
         marks.label_axes(friction, "friction at the input", "N.m", "speed of the input", "rad/s")
     return figure
-
-
-def _between(start: float, stop: float) -> np.ndarray:
-    return np.linspace(start, stop, POINTS)
 
 
 def _largest_torque(gear: Gear) -> float:

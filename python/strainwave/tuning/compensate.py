@@ -147,7 +147,7 @@ class Compensated(Pictured, Reported):
         from strainwave.drawing import marks
         from strainwave.tuning.pictures import draw_errors
 
-        with marks.new_figure(3.2, f"Error of {self.gear_set.name}") as figure:
+        with marks.new_figure(3.2) as figure:
             draw_errors(figure, self)
         return figure
 

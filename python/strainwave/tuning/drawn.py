@@ -7,11 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import arguments
 from strainwave.files.gear_set import GearSet
 from strainwave.parameters import every
 
 Array = NDArray[np.float64]
 
+MAX_DRAWN = 1_000_000  # gears at a time, some 100 MB of numbers
 ASSUMED_SPREAD = 0.3  # drawn factor up to 1 + this, either way, of a number that is assumed or has no stated spread
 ASSUMED_SPREADS = {
     "load": 0.2,
@@ -49,11 +51,15 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     Returns:
         the values of each number that differs, by path, shape (members,)
 
+    Raises:
+        ValueError: more are asked for than `MAX_DRAWN`
+
     >>> import strainwave as sw
     >>> draws = drawn_gears(sw.GearSet.read("robot-joint"), 3)
     >>> sorted({path.split(".")[1] for path in draws})
     ['damping', 'friction_input', 'gravity_torque', 'hysteresis', 'inertia', 'kinematic_error', 'stiffness']
     """
+    arguments.whole("members", members, 1, MAX_DRAWN)
     chance = np.random.default_rng(seed)
     numbers = every(gear_set.drive)
     identified = dict(_identified(gear_set, members, chance))

@@ -382,3 +382,8 @@ def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:
     assert (result.returncode, result.stdout) == (0, strainwave("--help", folder=tmp_path).stdout)
     for verb in ("identify", "demo", "simulate", "compare", "show", "list"):
         assert f"\n  {verb} " in result.stdout
+
+
+def test_a_file_in_the_place_of_the_gear_is_named(tmp_path: Path) -> None:
+    (tmp_path / "friction.csv").write_text("speed [rad/s],torque [N.m]\n1,2\n")
+    refused(tmp_path, ["identify", "friction.csv"], "friction.csv is a file, where the gear is asked for", "list gears")

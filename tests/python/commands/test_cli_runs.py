@@ -300,9 +300,11 @@ def test_drives_are_listed_with_what_they_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow("commands")
-def test_an_interrupt_of_a_run_leaves_nothing(folder: Path) -> None:
-    """The picture is drawn before anything is written, with a package that waits here."""
-    (folder / "matplotlib.py").write_text("import os, time\nos.write(1, b'here\\n')\ntime.sleep(30.0)")
+@pytest.mark.parametrize("caught", ["raise", "pass", "raise ImportError('cannot be imported') from None"])
+def test_an_interrupt_of_a_run_leaves_nothing(folder: Path, caught: str) -> None:
+    """The picture is drawn before anything is written, with a package that waits here, and may swallow the interrupt."""
+    waits = f"try:\n    os.write(1, b'here\\n')\n    time.sleep(30.0)\nexcept BaseException:\n    {caught}\n"
+    (folder / "matplotlib.py").write_text(f"import os, time\n{waits}")
     environment = os.environ | {"PYTHONPATH": str(folder)}
     process = start(*SIMULATE, "-o", "run.csv", "--plot", "run.svg", cwd=folder, stdout=subprocess.PIPE, env=environment)
     interrupted(process)

@@ -61,7 +61,7 @@ def of_two_joints(folder: Path) -> str:
 def with_counters(folder: Path) -> str:
     rows = np.arange(len(TIME), dtype=float)
     header = "t [s],q [rad],seq,stamp,x1"
-    return written(folder / "a.csv", header, TIME, ANGLE, rows, 1.7e9 + np.floor(TIME), TORQUE)
+    return written(folder / "a.csv", header, TIME, ANGLE, rows, 1.7e9 + np.floor(TIME), TORQUE / 9.85)
 
 
 def torque_and_numbers(folder: Path) -> str:
@@ -101,11 +101,8 @@ FILES: dict[str, Callable[[Path], str]] = {
     "sides": lambda folder: written(
         folder / "a.csv", "t [s],position [rad],current [A]", TIME, ANGLE, (TORQUE - 20.0 * np.sin(ANGLE)) / 10.0
     ),
-    "sides of two angles": lambda folder: written(
-        folder / "a.csv", "t [s],theta [rad],q [rad],tau_J [Nm]", TIME, ANGLE + 1e-4 * TORQUE, ANGLE, TORQUE
-    ),
     "side of a torque": lambda folder: written(
-        folder / "a.csv", "t [s],motor_angle [rad],joint_angle [rad],moment [Nm]", TIME, RATIO * ANGLE, ANGLE, TORQUE
+        folder / "a.csv", "t [s],motor_angle [rad],joint_angle [rad],moment [Nm]", TIME, RATIO * ANGLE, ANGLE, TORQUE / 10.0
     ),
     "side of a table": lambda folder: written(folder / "a.csv", "speed [rpm],torque [N.m]", 0.2 * RPM, FRICTION / 100.0),
     "side of a torque by its size": lambda folder: written(
@@ -159,16 +156,16 @@ OTHER_VERBS: dict[str, Callable[[Path], list[str]]] = {
     "predict a log in A": lambda folder: predicted(folder, IN_CURRENT, TIME, ANGLE, TORQUE / 9.85),
     "predict a table in A": lambda folder: predicted(folder, "speed [rpm],current [A]", RPM, FRICTION / 100.0),
     "rank a table in A": lambda folder: [
-        "rank", "csg-20-100", written(folder / "a.csv", "speed [rpm],current [A]", RPM, FRICTION / 100.0)
+        "identify", "csg-20-100", written(folder / "a.csv", "speed [rpm],current [A]", RPM, FRICTION / 100.0), "--rank"
     ],
     "orders of a matrix": lambda folder: [
         "orders", written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE)
     ],
     "diagnose a matrix": lambda folder: [
-        "diagnose", written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE)
+        "diagnose", "joint", written(folder / "a.csv", "c1,c2,c3", ANGLE, SPEED, TORQUE)
     ],
     "orders of two joints": lambda folder: ["orders", two_joints(folder)],
-    "diagnose two joints": lambda folder: ["diagnose", two_joints(folder)],
+    "diagnose two joints": lambda folder: ["diagnose", "joint", two_joints(folder)],
 }  # fmt: skip
 
 
@@ -221,7 +218,7 @@ def test_a_terminal_asks_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     command = first_command("speeds without unit", tmp_path)
     typing(monkeypatch, "2")
     assert in_terminal(monkeypatch, tmp_path, command) == 0
-    assert sys.argv[-2:] == ["--unit", "speed=rpm"]
+    assert sys.argv[-2:] == ["--unit", "speed=rad/s"]
     assert (tmp_path / "out" / "identify" / "gear.toml").is_file()
 
 

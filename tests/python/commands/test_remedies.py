@@ -139,17 +139,17 @@ COMMANDS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
         lambda folder: of_one_encoder(folder, changed(record(TRUTH, 0.02), "input_angle", -1.0 / 80.0)),
     ),
     "a run from rest in degrees as radians": (
-        "share left unexplained",
+        "error left unexplained",
         lambda folder: from_rest(folder, changed(test_unexplained.log(), "input_angle", 180.0 / np.pi)),
     ),
     "a run from rest with its encoders exchanged": (
-        "share left unexplained",
+        "error left unexplained",
         lambda folder: from_rest(
             folder, test_unexplained.log(), input_angle="joint_encoder", output_angle="motor_encoder"
         ),
     ),
     "a run from rest of another ratio": (
-        "share left unexplained",
+        "error left unexplained",
         lambda folder: from_rest(folder, test_unexplained.log(), teeth=80),
     ),
 }  # fmt: skip

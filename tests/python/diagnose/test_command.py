@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from math import tau
 from pathlib import Path
 
@@ -75,7 +76,12 @@ def test_a_change_is_an_alarm_with_its_cause_and_a_later_healthy_day_is_none(fol
 def test_a_quiet_recording_ends_with_exit_code_0_and_states_the_smallest_change(folder: Path) -> None:
     done = strainwave("diagnose", "joint", "later.csv", *JOINT, "--baseline", "healthy", "--out", "b", folder=folder)
     assert done.returncode == 0, done.stderr
-    assert "smallest change that would be an alarm" in " ".join(done.stdout.split())
+    limit, seen = re.findall(
+        r"smallest change that would be an alarm is ([\d.]+) % of an amplitude; from ([\d.]+) % on, a true change is one with "
+        "probability 0.9",
+        " ".join(done.stdout.split()),
+    )[0]
+    assert 1.1 * float(limit) < float(seen) < 2.0 * float(limit)
     assert "healthy:" not in done.stdout
 
 

@@ -115,24 +115,34 @@ def test_runge_and_kutta_see_the_drive_move_within_a_step():
     assert driven(model, mujoco.MjData(model), 1000)[-1] == pytest.approx(coarse, rel=5e-3)
 
 
-def test_an_arm_gets_two_drives():
-    text = ARM
-    for joint, name in (("shoulder", "robot-joint"), ("elbow", "position-drive")):
-        coupled = CoupledDrive.of(sw.GearSet.read(name).drive, 100.0)
+def test_an_arm_gets_two_drives_in_one_call(monkeypatch):
+    monkeypatch.setattr(export, "compiled", lambda sources, include: b"library")
+    monkeypatch.setattr(export, "losses", lambda *_: ())
+    joint, other = (sw.GearSet.read(name) for name in ("robot-joint", "position-drive"))
+    found = sw.export.mujoco_plugin(
+        joint, into=ARM, joint={"elbow": other, "all": joint}, max_torque=100.0, keep="frictionloss"
+    )
+    assert list(found.files) == ["gear.so", "gear_2.so", "gear.xml"]
+    assert found.remarks[0] == "the actuator old still acts on elbow, behind the gear; let elbow_gear_motor take its place"
+    text = found.files["gear.xml"].replace("strainwave.gear_2", "strainwave.position-drive")
+    text = text.replace('"strainwave.gear"', '"strainwave.robot-joint"')  # libraries that other tests have loaded
+    for name in DRIVES:
         exported(name)
-        text, remarks = export._attached(text, joint, coupled, "held", name, ("frictionloss",))
-        assert remarks == (() if joint == "shoulder" else (export_remark(name),))
     model = mujoco.MjModel.from_xml_string(text)
-    assert model.joint("elbow").frictionloss[0] == pytest.approx(0.1 + coupled.hold)
+    assert model.joint("elbow").frictionloss[0] == pytest.approx(0.1 + CoupledDrive.of(other.drive, 100.0).hold)
     data = mujoco.MjData(model)
-    data.ctrl[[data.actuator(f"{name}_motor").id for name in ("robot-joint", "position-drive")]] = 0.05, -0.1
+    data.ctrl[[data.actuator(f"{name}_gear_motor").id for name in ("shoulder", "elbow")]] = 0.05, -0.1
     mujoco.mj_step(model, data, nstep=4000)
     assert data.joint("shoulder").qpos[0] == pytest.approx(0.05, abs=2e-3)
     assert data.joint("elbow").qpos[0] == pytest.approx(-0.1, abs=5e-3)
 
 
-def export_remark(name):
-    return f"the actuator old still acts on elbow, behind the gear; let {name}_motor take its place"
+def test_joints_of_one_drive_share_a_library(monkeypatch):
+    monkeypatch.setattr(export, "compiled", lambda sources, include: b"library")
+    monkeypatch.setattr(export, "losses", lambda *_: ())
+    found = sw.export.mujoco_plugin(sw.GearSet.read("robot-joint"), into=ARM, joint="all")
+    assert list(found.files) == ["gear.so", "gear.xml"]
+    assert found.files["gear.xml"].count('plugin="strainwave.gear"') == 3  # the extension, and two actuators
 
 
 def test_an_unstable_timestep_is_refused_with_the_longest():

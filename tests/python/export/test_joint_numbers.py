@@ -43,6 +43,18 @@ def test_a_joint_of_mujoco_rests_below_its_friction(timestep: float) -> None:
     assert turned(plain, 0.9 * friction, timestep) > 1e-3  # MuJoCo's own default creeps
 
 
+def test_the_parser_of_ros_reads_the_urdf() -> None:
+    urdf = pytest.importorskip("urdf_parser_py.urdf")
+    found = joint(GEAR)
+    robot = urdf.URDF.from_xml_string(str(found.files["joint.urdf"]).encode())
+    (only,), (transmission,) = robot.joints, robot.transmissions
+    assert (only.dynamics.friction, only.dynamics.damping) == tuple(
+        found.numbers[key][0] for key in ("frictionloss", "damping")
+    )
+    assert only.limit.effort == GEAR.ratings["peak_torque"].value
+    assert transmission.actuators[0].mechanicalReduction == GEAR.gear.kinematics.ratio
+
+
 class Genesis:
     """Methods of an entity of Genesis, which record what is set."""
 

@@ -123,18 +123,97 @@ def test_each_joint_of_a_robot_gets_its_gear():
         mjcf("csg-20-100", into=ROBOT, joint="all", draws=3)
 
 
-@pytest.mark.parametrize(("share", "is_stable"), [(1.1, True), (0.7, False)])
-def test_the_least_inertia_at_a_timestep_is_the_limit_of_stability(share, is_stable):
-    found = mjcf("csg-20-100", into=ROBOT, joint="knee")
-    (remark,) = (each for each in found.remarks if "the gear needs" in each)
-    inertia = share * float(remark.partition("needs ")[2].split()[0])
-    link = f"""<mujoco><option timestep="0.0005" gravity="0 0 0"/><worldbody><body name="link"><joint name="knee" axis="0 0 1"/>
-      <inertial pos="0 0 0" mass="1" diaginertia="{3 * [inertia]!r}"/></body></worldbody></mujoco>"""
-    text = mjcf("csg-20-100", into=link.replace("[", "").replace("]", "").replace(",", ""), joint="knee").files["gear.xml"]
-    model = mujoco.MjModel.from_xml_string(text)
+@pytest.mark.parametrize(("share", "is_stable"), [(0.9, True), (1.15, False)])
+def test_a_timestep_is_shortened_to_what_the_gears_of_light_links_need(share, is_stable):
+    light = ROBOT.replace('mass="1"', 'mass="0.02"')
+    found = mjcf("csg-20-100", into=light, joint="hip, knee")
+    (remark,) = (each for each in found.remarks if "stable up to" in each)
+    model = mujoco.MjModel.from_xml_string(found.files["gear.xml"])
+    longest = float(remark.partition("up to ")[2].split()[0])
+    assert 0.1 * longest < model.opt.timestep < 0.5 * longest < 2.5e-4
+    model.opt.timestep = share * longest
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_FRICTIONLOSS
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
     data = mujoco.MjData(model)
-    data.joint("knee").qpos[0] = 1e-6
+    data.joint("knee").qpos[0] = data.joint("hip").qpos[0] = 1e-6
     mujoco.mj_step(model, data, nstep=2000)
-    assert (abs(data.joint("knee").qpos[0]) < 1e-5) == is_stable
+    twists = [data.joint(name).qpos[0] - data.joint(f"{name}_gear_input").qpos[0] / RATIO for name in ("hip", "knee")]
+    assert (np.abs(twists).max() < 1e-5) == is_stable
+
+
+# A joint in degrees that begins at another angle than 0, with a class three deep from the body around it; a name in UTF-8.
+DEEP = """<mujoco><compiler angle="degree"/>
+  <default><joint damping="1"/>
+    <default class="robot"><joint armature="0.2" frictionloss="3"/>
+      <default class="arm"><joint range="-120 120" stiffness="5"/>
+        <default class="upper"><joint damping="7" ref="20" limited="true"/><position kp="50" ctrlrange="-2 2"/></default>
+      </default></default></default>
+  <worldbody><body childclass="robot"><body childclass="arm"><body childclass="upper">
+    <frame euler="0 0 30"><joint name="élbow joint" axis="0 1 0"/></frame><geom size=".05" pos=".3 0 0" mass="1"/>
+  </body></body></body></worldbody>
+  <actuator><position class="upper" name="p" joint="élbow joint"/></actuator>
+  <keyframe><key qpos="0.8" ctrl="0.8"/></keyframe></mujoco>"""
+LEG = """<mujocoinclude><body pos="0 0 1"><freejoint/><geom type="box" size=".1 .1 .1" mass="3"/>
+  <frame pos="0 0 -.1" euler="0 30 0" childclass="leg"><body><joint name="hip pitch" axis="0 1 0" range="-90 90"/>
+    <geom type="mesh" mesh="bone" mass="1"/>
+    <body pos="0 0 -.3"><joint name="knee" axis="0 1 0" range="0 100"/><geom size=".03" pos="0 0 -.2" mass=".7"/>
+      <body pos="0 0 -.3"><joint name="ankle" type="ball"/><geom size=".04" mass=".2"/></body></body></body></frame>
+</body></mujocoinclude>"""
+SCENE = """<mujoco><compiler angle="degree" autolimits="true" meshdir="parts"/><option timestep="0.0005"/>
+  <default><default class="leg"><joint damping="2" armature=".05"/><general dyntype="filter" dynprm=".05"/></default></default>
+  <asset><mesh name="bone" file="bone.obj" scale=".1 .1 .3"/></asset>
+  <worldbody><include file="leg.xml"/>{posts}
+    <body pos="0 2 .3"><joint name="rail" type="slide" axis="1 0 0"/><geom size=".1" mass="1"/>
+      <body><joint name="pole" axis="0 1 0" range="-60 60"/><geom size=".05" pos="0 0 .4" mass=".3"/></body></body></worldbody>
+  <tendon><fixed name="t"><joint joint="hip pitch" coef="1"/><joint joint="knee" coef="-.5"/></fixed></tendon>
+  <equality><joint joint1="pole" joint2="knee" polycoef="0 .1 0 0 0" active="false"/></equality>
+  <actuator><general class="leg" name="g" joint="knee" gainprm="20"/></actuator>
+  <sensor><jointpos joint="knee"/></sensor>
+  <keyframe><key qpos="0 0 1 1 0 0 0 .2 .5 1 0 0 0 {angles} .1 .3" act=".1" ctrl=".1"/></keyframe></mujoco>"""
+REPLICATED = """<replicate count="3" offset=".5 0 0"><body pos="2 0 .5"><joint name="swing" axis="0 1 0"/>
+  <geom size=".05" pos="0 0 -.2" mass=".2"/></body></replicate>"""
+BONE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
+
+
+def unwound(model):
+    """The largest twist of the gears where a model begins, and at its keyframe [rad]."""
+    data, twists = mujoco.MjData(model), []
+    gears = [i for i in range(model.ntendon) if "_twist_" in model.tendon(i).name]
+    for begin in (mujoco.mj_resetData, lambda *which: mujoco.mj_resetDataKeyframe(*which, 0)):
+        begin(model, data)
+        mujoco.mj_forward(model, data)
+        twists.append(np.abs(data.ten_length[gears]).max())
+    return max(twists)
+
+
+def test_a_joint_in_a_frame_with_classes_three_deep_and_another_zero_gets_its_gear(tmp_path):
+    (tmp_path / "robot.xml").write_text(DEEP, "utf-8")
+    found = mjcf("csg-20-100", into=tmp_path / "robot.xml", joint="all")
+    model = mujoco.MjModel.from_xml_string(found.files["gear.xml"])
+    rotor, output = model.joint("gear_input"), model.joint("élbow joint")
+    assert not model.jnt_limited[rotor.id]
+    assert model.dof_armature[rotor.dofadr[0]] == pytest.approx(sw.load("csg-20-100").input_inertia)
+    assert output.damping[0] == output.armature[0] == 0.0
+    assert unwound(model) < 1e-12
+    assert model.body_parentid[model.jnt_bodyid[rotor.id]] == model.body_parentid[model.jnt_bodyid[output.id]]
+
+
+@pytest.mark.parametrize("posts", ["", REPLICATED], ids=["include", "replicate"])
+def test_a_scene_of_several_files_is_one_model_with_gears(tmp_path, posts):
+    (tmp_path / "robot" / "parts").mkdir(parents=True)
+    (tmp_path / "robot" / "parts" / "bone.obj").write_text(BONE)
+    (tmp_path / "robot" / "leg.xml").write_text(LEG)
+    (tmp_path / "robot" / "scene.xml").write_text(SCENE.format(posts=posts, angles="0 .7 0" if posts else ""))
+    found = mjcf("csg-14-100", into=tmp_path / "robot" / "scene.xml", joint="all")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "gear.xml").write_text(found.files["gear.xml"])
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out" / "gear.xml"))  # which finds the mesh
+    hinges = ["hip pitch", "knee", "pole", *(["swing0", "swing1", "swing2"] if posts else [])]
+    assert {model.joint(i).name for i in range(model.njnt)} >= {f"{each}_gear_input" for each in hinges}
+    assert unwound(model) < 1e-12
+    assert not any("by hand" in remark for remark in found.remarks)
+
+
+def test_a_text_that_includes_files_asks_for_its_path():
+    with pytest.raises(ValueError, match="give its path, not its text"):
+        mjcf("csg-14-100", into=SCENE.format(posts="", angles=""), joint="knee")

@@ -468,7 +468,6 @@ def test_a_catalogue_gear_turns_its_output_by_its_ratio(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "near"),
     [
-        ("HFUC-25-100", "; near it are hfuc-25-100"),
         ("hfuc-25-101", "; near it are hfuc-25-.*, hfuc-25-100"),
         ("position-drvie", "; near it are position-drive, "),
         ("xyz", "; strainwave"),
@@ -490,3 +489,15 @@ def test_a_path_is_what_has_a_folder_or_ends_in_toml(tmp_path: Path, monkeypatch
 def test_a_file_is_saved_under_a_name_that_is_read_as_a_path() -> None:
     with pytest.raises(ValueError, match=exactly("mine: a gear file ends in .toml")):
         GearSet.read("hfuc-25-100").save("mine")
+
+
+@pytest.mark.parametrize("name", ["HFUC-25-100", "hfuc_25_100", " HFUC 25 100"])
+def test_a_name_is_known_as_catalogues_print_it(name: str) -> None:
+    assert sw.load(name) == sw.load("hfuc-25-100")
+
+
+def test_a_gear_without_its_name_and_source_is_not_saved(tmp_path: Path) -> None:
+    with pytest.raises(TypeError, match=r"^name and source must be given: a gear does not have them"):
+        sw.save(sw.Gear(), tmp_path / "mine.toml")
+    with pytest.raises(TypeError, match=r"^source must be given"):
+        sw.save(sw.Gear(), tmp_path / "mine.toml", name="mine")

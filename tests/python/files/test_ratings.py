@@ -120,7 +120,7 @@ def test_recordings_are_compared_one_by_one_in_their_order() -> None:
             sw.Gear(),
             recorded(torque=[1.0]),
             TypeError,
-            "gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not Gear(",
+            "gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not <Gear: ",
         ),
         (rated(), 3, TypeError, "recordings must hold a Recording each, not 3"),
         (

@@ -13,6 +13,7 @@ from typing import BinaryIO
 
 import hypothesis.extra.numpy as hnp
 import numpy as np
+import pandas
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
@@ -76,7 +77,7 @@ def test_columns_are_read_in_their_own_and_in_other_units() -> None:
     assert len(RUN) == 4
     assert "speed" in RUN
     assert "twist" not in RUN
-    assert repr(RUN) == '<Recording "a run": 4 samples from 0 s to 1.5 s; time [s], speed [rpm], torque [N.m]>'
+    assert repr(RUN) == '<Recording: "a run": 4 samples from 0 s to 1.5 s; time [s], speed [rpm], torque [N.m]>'
 
 
 def test_time_is_in_seconds_whatever_its_unit() -> None:
@@ -496,3 +497,15 @@ def test_a_recording_is_taken_by_dict_and_pandas() -> None:
     pandas.testing.assert_frame_equal(pandas.DataFrame(run), frame, check_exact=True)
     assert list(run) == [(0.0, 1.0), (0.1, 2.0)]
     assert len(list(run)) == len(run)
+
+
+def test_a_table_of_pandas_is_a_recording(tmp_path: Path) -> None:
+    columns = {"time": [0.0, 0.1], "torque": [1.0, 2.0]}
+    made = Recording(columns, {"time": "s", "torque": "N.m"})
+    frame = pandas.DataFrame(columns)
+    assert Recording(frame, made.units) == Recording(made.to_frame()) == made
+    assert Recording(frame.rename(columns={"time": "time [s]", "torque": "torque (N.m)"})) == made
+    with pytest.raises(ValueError, match='column "torque" has no unit'):
+        Recording(frame.rename(columns={"time": "time [s]"}))
+    with pytest.raises(TypeError, match="units must be given"):
+        Recording(columns)

@@ -68,4 +68,4 @@ def test_without_a_compiler_it_is_an_error_with_what_to_do(monkeypatch: pytest.M
 def test_the_command_prints_a_line_for_each_job(tmp_path: Path) -> None:
     result = strainwave("doctor", "compile", "two-inertia-gear", "--job", "simulate_adaptively", folder=tmp_path)
     assert result.returncode == 0
-    assert [line.split()[0] for line in result.stdout.splitlines()[1:]] == ["job", "simulate_adaptively"]
+    assert [line.split()[0] for line in result.stdout.splitlines()[1:]] == ["simulate_adaptively"]

@@ -265,3 +265,10 @@ def test_once_per_turn_of_the_output_is_one_order_with_the_wind_up_by_a_weight(t
     assert of_output.amplitude == pytest.approx(1.1e-4, abs=4.0 * of_output.amplitude_sigma)
     assert of_output.amplitude_sigma < 1e-6
     assert any("order 1 of the output contains the wind-up by a weight" in each for each in found.remarks)
+
+
+def test_a_simulation_has_the_ratio_of_its_drive() -> None:
+    """The motion is too small to determine it: a recording of the same angles takes another one."""
+    run = sw.simulate(sw.load("robot-joint"), sw.scenario.sine(0.002, 1.0, 1.0))
+    assert sw.transmission_error(run).ratio.used == -100.0
+    assert sw.transmission_error(run.select(list(run.names))).ratio.used == -99.0

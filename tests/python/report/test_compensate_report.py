@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.report.compensate import compensate_files, compensate_summary, too_much, verdict
+from strainwave.report.compensate import compensate_files, compensate_summary, too_much
 from strainwave.tuning.conditions import OverCompensation
 
 from tests.python.report.reading import Page
@@ -51,7 +51,7 @@ def test_the_numbers_are_those_of_the_result(found: sw.tuning.Compensated, files
 
 def test_the_verdict_is_the_first_line_and_each_effect_is_named(found: sw.tuning.Compensated) -> None:
     first, *rest = compensate_summary(found).splitlines()
-    assert first == verdict(found).replace("\N{NO-BREAK SPACE}", " ")
+    assert first == found.verdict.replace("\N{NO-BREAK SPACE}", " ")
     assert f"(−{100.0 * found.gain:.0f} %)" in first if found.is_compensated else "no compensation gains" in first
     assert "in the median of 3 gears drawn anew" in first
     assert rest[0].strip().startswith("tracking error on the gears by which one was chosen: ")

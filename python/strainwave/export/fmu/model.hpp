@@ -6,16 +6,14 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strainwave/kernel/run.hpp>
 
 #include "contradictions.hpp"
-#include "stretches.hpp"
 #include "drive.hpp"  // Drive, laws, shape, parameters, channels, names; written for each drive
+#include "stretches.hpp"
 
 namespace fmu {
 
 using strainwave::Input;
-using strainwave::Interval;
 using strainwave::kernel::input_count;
 
 using Compiled = decltype(Drive<double>{}.compile());
@@ -39,8 +37,8 @@ struct Content {
     double time;
     double numbers[parameter_count];
     double inputs[input_count];
-    double slopes[input_count / 2];  // of the inputs, in the next step only, as FMI 2 sets them
-    bool rate_is_given;              // whether the tool has set a rate of the command
+    double slopes[input_count / 2];    // of the inputs, in the next step only, as FMI 2 sets them
+    bool rate_is_given;                // whether the tool has set a rate of the command
     double last_command, last_length;  // at the begin of the last step, and its length; 0 before the second
     double outputs[output_count];
     Input<double> acting;  // inputs at this instant
@@ -141,7 +139,7 @@ public:
         State state;
         if (!begin(state)) return false;
         new (&content.here) Evaluation(drive.evaluate(drive.consistent(state), content.acting));
-        sample(0.0, next_instant(max_step()));
+        content.here = strainwave::system::up_to_date(drive, content.here, content.acting, 0.5 * next_instant(max_step()));
         return show("begins");
     }
 
@@ -289,10 +287,10 @@ public:
         content.last_length = 0.0;
         content.time = time;
         content.acting = at(0.0);
-        const State shape = drive.initial_state();
-        auto scalars = strainwave::flattened<double>(shape);
+        const State whole = drive.initial_state();
+        auto scalars = strainwave::flattened<double>(whole);
         for (int i = 0; i < number_count; ++i) scalars[i] = from[i];
-        content.here = drive.evaluate(strainwave::refilled(shape, scalars), content.acting);
+        content.here = drive.evaluate(strainwave::refilled(whole, scalars), content.acting);
         return show("continues");
     }
     bool fail(const char* format, ...) __attribute__((format(printf, 2, 3))) {
@@ -451,27 +449,13 @@ private:
     }
 
     bool advance(double length) {
-        const auto state = [this]() -> const State& { return content.here.state; };
-        return strainwave::exported::in_steps(drive, length, max_step(), state, [this](double from, double dt) {
-            sample(from, dt);
-            return take(from, dt);
-        });
+        const double begin = content.time;
+        return strainwave::exported::advance(
+            drive, content.here, [this](double after) { return at(after); }, length, max_step(), steps,
+            [this, begin](double after) { return !drive.has_bounds() || is_valid(begin + after); });
     }
     double next_instant(double limit) const {
         return strainwave::exported::next_instant(drive, content.here.state, limit, max_step());
-    }
-    void sample(double from, double dt) {
-        if (strainwave::system::due(drive, content.here.state, 0.5 * dt))
-            content.here = strainwave::system::sampled(drive, content.here, at(from), 0.5 * dt);
-    }
-    bool take(double from, double dt) {
-        const Interval<Input<double>> u{at(from), at(from + 0.5 * dt), at(from + dt)};
-        const auto smooth = [this](const Compiled& moved, const auto& start, const auto& over, double h) {
-            return strainwave::kernel::smooth_step(moved, start, over, h, steps);
-        };
-        steps.begin(dt);
-        content.here = strainwave::step(drive, content.here, u, dt, smooth);
-        return !drive.has_bounds() || is_valid(content.time + from + dt);
     }
     bool is_valid(double time) {
         strainwave::kernel::Outcome outcome;

@@ -29,8 +29,9 @@ def sources(drive: Drive, found: list[Variable], version: int, exchanges: bool, 
     Raises:
         ImportError: the package fmpy, which contains the headers of FMI, is not installed
     """
-    source = resources.files("strainwave.export.fmu").joinpath(f"fmi{version}.cpp").read_text("utf-8")
-    return drive_sources(drive, found, {f"fmi{version}.cpp": source, **_fmi_headers(version)}, exchanges, follows)
+    folder = resources.files("strainwave.export.fmu")
+    own = {name: folder.joinpath(name).read_text("utf-8") for name in (f"fmi{version}.cpp", "functions.hpp")}
+    return drive_sources(drive, found, {**own, **_fmi_headers(version)}, exchanges, follows)
 
 
 def drive_sources(

@@ -1,11 +1,18 @@
 // A drive behind a joint of Newton: its numbers, its state, and its steps. The joint prescribes the motion of the output shaft.
 #pragma once
-#include <strainwave/integrate.hpp>
+// Mathematics of the C library under the names of <cmath>, for compilers that come without the C++ library, such as Warp's for the
+// CPU.
+#define SW_NO_STANDARD_LIBRARY
+#if !defined(__CUDACC_RTC__)
+namespace std {
+#include "mathematics.hpp"
+}  // namespace std
+#endif
 #include <strainwave/kernel/assemble.hpp>
 
 #include "contradictions.hpp"
-#include "stretches.hpp"
 #include "drive.hpp"  // S, Drive, laws, shape, parameter_count, output_count, command_is, is_followed; written for each drive
+#include "stretches.hpp"
 
 namespace actuator {
 
@@ -13,7 +20,6 @@ using Compiled = decltype(Drive<S>{}.compile());
 using Evaluation = Compiled::Evaluation;
 using State = Compiled::State;
 using Input = strainwave::Input<S>;
-using Interval = strainwave::Interval<Input>;
 using Steps = strainwave::integrate::Steps<S, Compiled>;
 
 inline constexpr int settling_rounds = 8;  // the kinematic error depends on the angle that it changes
@@ -46,8 +52,8 @@ inline void prepare(int i, const S* numbers, double* prepared, int* problems) {
     *reinterpret_cast<Prepared*>(prepared + i * prepared_words) = {model.compile(), *from.numbers};
 }
 
-// The motion of a joint from one instant to the next: Hermite's cubic. The command of the first goes on at its rate; a command that is
-// followed and has no rate moves to the next in a line.
+// The motion of a joint from one instant to the next: Hermite's cubic. The command of the first goes on at its rate; a command that
+// is followed and has no rate moves to the next in a line.
 class Motion {
     Instant from;
     S temperature, span, begin, bend, turn;
@@ -86,30 +92,6 @@ constexpr State at_joint(const Compiled& drive, const Input& u) {
     return drive.consistent(x);
 }
 
-// A step without events, once in the code however often it is called.
-__attribute__((noinline)) inline Evaluation smooth_step(const Compiled& drive, const Evaluation& from, const Interval& u,
-                                                        const S& dt, Steps& steps) {
-    return drive.evaluate(steps(drive, from, u, dt), u.end);
-}
-
-// The drive at the end of a motion of `dt` [s], by steps of at most `max_step` [s], which end where a controller samples.
-inline Evaluation moved(const Compiled& drive, const State& x, const Motion& motion, const S& dt, const S& max_step) {
-    Evaluation here = drive.evaluate(x, motion.at(S(0.0)));
-    Steps steps;
-    const auto smooth = [&steps](const Compiled& system, const Evaluation& from, const Interval& u, const S& h) {
-        return smooth_step(system, from, u, h, steps);
-    };
-    const auto state = [&here]() -> const State& { return here.state; };
-    strainwave::exported::in_steps(drive, dt, max_step, state, [&](const S& time, const S& stretch) {
-        const Interval u{motion.at(time), motion.at(time + S(0.5) * stretch), motion.at(time + stretch)};
-        here = strainwave::system::up_to_date(drive, here, u.start, S(0.5) * stretch);
-        steps.begin(stretch);
-        here = strainwave::step(drive, here, u, stretch, smooth);
-        return true;
-    });
-    return here;
-}
-
 // Take gear `i` of `count` to the present instant of its joint, `dt` [s] after the last. A number of one gear lies next to that
 // of the next gear. `places` are those of position, speed, target position and target speed; `feedforward` may be null.
 inline void advance(int i, int count, const double* prepared, int prepared_count, const S* before, S* after, const float* position,
@@ -138,8 +120,12 @@ inline void advance(int i, int count, const double* prepared, int prepared_count
     if (has_begun) {
         strainwave::Flat<S, State> numbers{};
         for (int k = 0; k < memory_count - first_state; ++k) numbers[k] = before[(first_state + k) * count + i];
-        const State x = strainwave::refilled(gear.drive.initial_state(), numbers);
-        here = moved(gear.drive, x, Motion(last, now, S(dt), gear.temperature), S(dt), S(max_step));
+        const Motion motion(last, now, S(dt), gear.temperature);
+        here = gear.drive.evaluate(strainwave::refilled(gear.drive.initial_state(), numbers), motion.at(S(0.0)));
+        Steps steps;
+        strainwave::exported::advance(
+            gear.drive, here, [&motion](const S& after) { return motion.at(after); }, S(dt), S(max_step), steps,
+            [](const S&) { return true; });
         here = gear.drive.evaluate(here.state, u);
     } else {
         here = gear.drive.evaluate(at_joint(gear.drive, u), u);

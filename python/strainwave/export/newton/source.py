@@ -31,8 +31,7 @@ def source(drive: Drive, scalar: str, command: str, outputs: int, follows: bool)
         follows: whether a command without a rate moves in a line from call to call; else it is held
     """
     texts = {"drive.hpp": _drive_header(drive, scalar, command, outputs, follows)}
-    texts |= {name: OWN.joinpath(name).read_text("utf-8") for name in ("actuator.hpp", "standard.hpp")}
-    return cplusplus.amalgamated(["standard.hpp", "actuator.hpp"], texts)
+    return cplusplus.amalgamated(["actuator.hpp"], texts | {"actuator.hpp": OWN.joinpath("actuator.hpp").read_text("utf-8")})
 
 
 def _drive_header(drive: Drive, scalar: str, command: str, outputs: int, follows: bool) -> str:

@@ -26,7 +26,6 @@ Array = NDArray[np.float64]
 FULL_TURN = 2.0 * np.pi  # rad
 ORDER_COUNT = 10  # harmonics of the position control article, and of the law
 MIN_SAMPLES_PER_PERIOD = 4  # of the highest order
-CONTRADICTION_SIGMA = 3.0  # standard deviations: two numbers further apart contradict each other
 
 
 @dataclass(frozen=True, eq=False)

@@ -54,16 +54,16 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         others = f"the motion of joints {listed(joints)} is known, but the record may be too short for the torque that they add"
     unit = held_out.unit
     yield Check(
-        "unexplained on data held out", source, held_out.relative, MAX_UNEXPLAINED, "1", held_out.relative > MAX_UNEXPLAINED,
-        f"the model leaves {held_out.error:.3g} {unit} of {held_out.channel} on the {held_out.stretch}, where it varies by "
-        f"{held_out.zero:.3g} {unit} about its mean before: {100.0 * held_out.relative:.0f} % is unexplained",
+        "unexplained on data held out", source, held_out.error, MAX_UNEXPLAINED * held_out.zero, unit,
+        held_out.relative > MAX_UNEXPLAINED,
+        f"the RMS error of {held_out.channel} on the {held_out.stretch} is {held_out.words}: more than half is unexplained",
         f"{others}; the motion may be too small or at one speed only, or columns, units or sides are not what they are "
         "taken for",
     )  # fmt: skip
     if np.isfinite(held_out.plain):
-        share, limit = held_out.share_of_plain, held_out.max_share_of_plain
+        limit = held_out.max_share_of_plain
         yield Check(
-            "plain least squares", source, share, limit, "1", share > limit,
+            "plain least squares", source, held_out.error, limit * held_out.plain, unit, held_out.share_of_plain > limit,
             f"plain least squares leaves {held_out.plain:.3g} {unit} on the {held_out.stretch}, the model {held_out.error:.3g}",
             "record longer, or see whether columns, units and sides are right: what the model has beyond plain least squares "
             "does not predict this record",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from strainwave.identification.results.file_result import FileEstimate
 from strainwave.kinematics import StrainWave
 from strainwave.messages import as_option
 from strainwave.statistics.scale import noise_sigma
+from strainwave.typeset import quantity
 
 Array = NDArray[np.float64]
 
@@ -51,22 +53,50 @@ class Cause:
 
 def explained(found: Fit, source: str) -> Check:
     """Return the check that a fit explains its measurement."""
-    shares = zip(found.experiment.channels, unexplained(found).tolist(), allowed(found).tolist(), strict=True)
-    return share_left({name: (share, limit) for name, share, limit in shares}, source)
+    of_table = isinstance(found.experiment, FrictionTable)
+    sizes = np.sqrt(np.mean(found.experiment.measured**2, axis=1)) if of_table else np.std(found.experiment.measured, axis=1)
+    numbers = (unexplained(found) * sizes, sizes, allowed(found))
+    channels = zip(found.experiment.channels, found.experiment.units, *(each.tolist() for each in numbers), strict=True)
+    return error_left({name: Left(error, size, unit, limit) for name, unit, error, size, limit in channels}, source)
 
 
-def share_left(shares: Mapping[str, tuple[float, float]], source: str) -> Check:
+class Left(NamedTuple):
+    """An error that a model leaves of a channel, and what it may be.
+
+    Attributes:
+        error: root mean square, in addition to noise
+        size: of the channel: how it varies, or the torque of a table, which may vary by its noise alone
+        unit: of both
+        limit: share of the size that may be left [1]
+    """
+
+    error: float
+    size: float
+    unit: str
+    limit: float
+
+    @property
+    def over_limit(self) -> float:
+        """The error over what it may be [1]."""
+        return self.error / max(self.limit * self.size, 1e-300)
+
+
+def error_left(channels: Mapping[str, Left], source: str) -> Check:
     """Return the check that a model explains a measurement, which every kind has: by `explained`, or by data held out.
 
     Args:
-        shares: of each channel the share of its variation that is left, and the share allowed
+        channels: what is left of each
         source: name of the file
     """
-    left = [f"{100.0 * share:.0f} % of the variation of {name}" for name, (share, limit) in shares.items() if share > limit]
-    share, limit = max(shares.values(), key=lambda each: each[0] / each[1])
+    left = [
+        f"{name.replace('_', ' ')} {quantity(each.error, each.unit)}, of a signal of {quantity(each.size, each.unit)}"
+        for name, each in channels.items()
+        if each.over_limit > 1.0
+    ]
+    worst = max(channels.values(), key=lambda each: each.over_limit)
     return Check(
-        "share left unexplained", source, share, limit, "1", bool(left),
-        f"the model does not explain it: {', '.join(left)} is left. Nothing is identified from it" if left else "",
+        "error left unexplained", source, worst.error, worst.limit * worst.size, worst.unit, bool(left),
+        f"the model does not explain it: RMS error of {', '.join(left)}. Nothing is identified from it" if left else "",
         "look at the plot; see whether signs, units, sides, ratio and zeros are right",
     )  # fmt: skip
 
@@ -154,14 +184,16 @@ def _units(recording: Recording, drive: Drive) -> Iterator[Cause]:
 
 
 def _sides(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> Iterator[Cause]:
-    for quantity in ("angle", "speed"):
-        sides = (f"input_{quantity}", f"output_{quantity}")
+    for what_moves in ("angle", "speed"):
+        sides = (f"input_{what_moves}", f"output_{what_moves}")
         present = [side for side in sides if side in recording]
         if not present:
             continue
         names = {sides[0]: sides[1], sides[1]: sides[0]}
         what = (
-            f'"{present[0]}" was measured at the other side' if len(present) == 1 else f"the columns of {quantity} are swapped"
+            f'"{present[0]}" was measured at the other side'
+            if len(present) == 1
+            else f"the columns of {what_moves} are swapped"
         )
         remedy = " ".join(as_option("column", names[name], columns.get(name, name)) for name in present)
         yield Cause(what, f"name the columns the other way: {remedy}", _renamed(recording, names), drive)

@@ -123,8 +123,8 @@ class ExperimentPlan(Pictured):
             alone = f"; determines by itself {listed(map(str, step.determines))}" if step.determines else ""
             yield Row(f"measurement {number}", f"{step.repeats} x {step.words}{alone}")
         for each in self.expectations:
-            before = "not known" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
-            yield Row(each.path, each.value, each.unit, each.after, f"before {before}")
+            before = "unknown" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
+            yield Row(each.path, each.value, each.unit, each.after, f"was {before}")
 
     def _remarks(self) -> Iterator[str]:
         yield from (f"{each.path}: {each.why}" for each in self.expectations if each.why)
@@ -144,7 +144,8 @@ class ExperimentPlan(Pictured):
         before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in known]
         after = [100.0 * each.after / abs(each.value) for each in known]
         names = [each.path for each in known]
-        return bars_figure("Standard deviation over the value", names, {"before": before, "after": after}, "%")
+        bars = ({"before": before} if np.isfinite(before).any() else {}) | {"after": after}
+        return bars_figure("Standard deviation over the value", names, bars, "%")
 
 
 def plan_experiments(

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
+HELD_OUT = ", held out"  # behind the name of an error
 ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of the channels
 REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
 MAX_ROUGH_PASSES = 4  # of one step each, after the first
@@ -96,10 +97,10 @@ class Fit(ComparedByFields, Pictured):
     >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
     >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.01, breakaway=0.01))
     >>> print(sw.fit(gear, table, ["friction_input.coulomb", "friction_input.viscous"]))
-    Fit: 2 parameters, residual 88.3 µN·m rms
+    Fit: 2 parameters, rms 88.3 µN·m
       friction_input.coulomb     0.019979 ± 0.000027  N·m        start 0.01
       friction_input.viscous  (301.12 ± 0.99) × 10⁻⁶  N·m·s/rad  start 0
-      residual of torque               88.299 × 10⁻⁶  N·m        rms
+      rms of torque                    88.299 × 10⁻⁶  N·m
     """
 
     model: Any
@@ -234,28 +235,31 @@ class Fit(ComparedByFields, Pictured):
         return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
 
     def _headline(self) -> str:
-        left = ", ".join(typeset.quantity(row.value, row.unit) for row in self._left() if isinstance(row.value, float))
+        left = list(self._left())
+        held_out = [row for row in left if row.name.endswith(HELD_OUT)]
+        error = ", ".join(typeset.quantity(row.value, row.unit) for row in held_out or left if isinstance(row.value, float))
+        where = HELD_OUT if held_out else ""
         open_ones = sum(not np.isfinite(each.sigma) for each in self.estimates)
         verdict = f", {open_ones} not determined" if open_ones else ""
         doubts = f", {counted(len(self.doubts), 'doubt')}" if self.doubts else ""
-        return f"{counted(len(self.estimates), 'parameter')}{verdict}, residual {left} rms{doubts}"
+        return f"{counted(len(self.estimates), 'parameter')}{verdict}, rms {error}{where}{doubts}"
 
     def _rows(self) -> Iterator[Row]:
         for each in self.estimates:
             state = ", at its limit" if each.at_limit else "" if np.isfinite(each.sigma) else ", not determined by the data"
-            yield Row(each.path, each.value, each.unit, each.sigma, f"start {typeset.number(each.start)}{state}")
+            yield Row(each.path, each.value, each.unit, each.sigma, f"start {typeset.number(each.start, 3)}{state}")
         yield from self._left()
 
     def _left(self) -> Iterator[Row]:
         """Yield the residual of each channel of each record, root mean square, fitted and held out."""
         for part in self.parts:
             of = f"{OF_RECORD}{part.name}" if len(self.parts) > 1 else ""
-            for held_out, where in ((False, ""), (True, " on data held out")):
+            for held_out, where in ((False, ""), (True, HELD_OUT)):
                 for name, unit, rms in zip(
                     part.experiment.channels, part.experiment.units, part.rms(held_out=held_out).tolist(), strict=True
                 ):
                     if np.isfinite(rms):
-                        yield Row(f"residual of {name}{of}{where}", rms, unit, note="rms")
+                        yield Row(f"rms of {name}{of}{where}", rms, unit)
 
     def _remarks(self) -> Iterator[str]:
         return iter(self.doubts)

@@ -82,7 +82,7 @@ class Minima(ComparedByFields, Pictured):
     def _rows(self) -> Iterator[Row]:
         for number, end in enumerate(self.ends, start=1):
             yield Row(f"cost of minimum {number}", end.cost, "1", note=f"above the least, {end.starts} starts")
-            yield from (Row(f"{path} at minimum {number}", value, self.units[path]) for path, value in end.values.items())
+            yield from (Row(f"{path} ({number})", value, self.units[path]) for path, value in end.values.items())
 
     def _remarks(self) -> Iterator[str]:
         if self.lower:
@@ -135,10 +135,9 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
     >>> print(minima(found, 3))
     Minima: 4 of 4 starts ended at friction_input.coulomb = 0.019979 N.m,
       friction_input.viscous = 0.00030112 N.m.s/rad
-      cost of minimum 1                             0
-          above the least, 4 starts
-      friction_input.coulomb at minimum 1    0.019979  N·m
-      friction_input.viscous at minimum 1  0.00030112  N·m·s/rad
+      cost of minimum 1                    0             above the least, 4 starts
+      friction_input.coulomb (1)    0.019979  N·m
+      friction_input.viscous (1)  0.00030112  N·m·s/rad
     """
     starts, random = arguments.whole("starts", starts, 1, MAX_STARTS), np.random.default_rng(arguments.whole("seed", seed, 0))
     problem, given = solved_problem(found)

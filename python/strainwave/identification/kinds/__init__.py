@@ -24,6 +24,8 @@ KINDS = {
     "effort": Listed(
         "torque or current without the motion that made it, or at one constant speed", "constant_speed.ConstantSpeed"
     ),
+    "starting": Listed("a table of the torque at which the input starts", "starting_torque.StartingTorque"),
+    "coast_down": Listed("a run-down of the input without the motor", "coast_down.CoastDown"),
     "torsion": Listed("a torsion loop or branch", "torsion_loop.Torsion"),
     "positioning": Listed("commanded against measured angles of one axis", "positioning.PositioningSteps"),
     "vibration": Listed("a record of vibration while a shaft turns", "vibration.Vibration"),

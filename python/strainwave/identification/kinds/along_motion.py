@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from strainwave.files.recording import Recording
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
 from strainwave.identification.candidates.ripple import is_one_wave
 from strainwave.identification.candidates.rotor import (
     SHARE_OF_UNKNOWN_ROTOR,
@@ -32,9 +33,10 @@ from strainwave.identification.checks.logs import (
     unit_of_torque,
 )
 from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_motion
+from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -45,7 +47,7 @@ from strainwave.identification.results.curves import picture_of_friction, pictur
 from strainwave.identification.results.determined import PATH as STEADY, friction_at
 from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN
+from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
 from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
@@ -54,6 +56,7 @@ from strainwave.orders.two_encoders import transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 
+SLIDING = 4.0  # times the speed about which the sign of friction turns over: its mean over both senses is 0.1 % off from there
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
@@ -128,7 +131,16 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks += checks_of_motion(best, drive, recording, held_out, file)
     unchecked = _unchecked(taken, {check.name for check in checks})
     of_model += _scales(unchecked)
-    every = (*of_model, *speed_of_another_clock(file), *file.remarks, *remarks, *_shares(best.fit, file.regressors))
+    shaped = _shape(predicted, log, held_out, ratio, name)
+    checks += shaped.checks
+    every = (
+        *of_model,
+        *speed_of_another_clock(file),
+        *file.remarks,
+        *remarks,
+        *_shares(best.fit, file.regressors),
+        *shaped.remarks,
+    )
     dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
     of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
     pictures = (Picture(predicted), *of_friction, *between.pictures)
@@ -139,6 +151,18 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         ),
         known,
     )  # fmt: skip
+
+
+def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
+    """Return the check of the shape of what a model leaves of a log over angles and speed, and a remark."""
+    moved = moving(log)
+    slides = np.abs(log.motion.speed[moved]) > SLIDING * turnover_speed(log.motion.speed)
+    angle, speed = log.motion.angle[moved][slides], log.motion.speed[moved][slides]
+    abscissae = {"the angle of the output": angle / ratio, "the speed": speed}
+    if np.ptp(angle) > 2.0 * np.pi:
+        abscissae["the turn of the input"] = np.mod(angle, 2.0 * np.pi)
+    residual = (predicted[log.effort] - predicted["modelled"])[slides]
+    return judged_shape(residual, abscissae, held_out.zero, held_out.unit, source)
 
 
 def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:

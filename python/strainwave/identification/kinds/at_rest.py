@@ -19,10 +19,12 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
 from strainwave.identification.results.file_result import FileEstimate
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
+from strainwave.parameters import plain
 
 SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
 BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
 WITH_BREAKAWAY = (*SLIDING, friction.LuGre)  # laws with a torque of breakaway
+BREAKAWAY = "gear.friction_input.breakaway"
 MIN_RATIO = 2.0  # of a gear
 MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
 
@@ -84,6 +86,25 @@ def estimate_of(each: Estimate, path: str, law: str, uncertain: float, why: str)
     """
     found = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
     return found.sharing(uncertain * abs(each.value)).unless_uncertain()
+
+
+def with_breakaway(known: GearSoFar, estimate: FileEstimate, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
+    """Return the gear with a breakaway torque, unless a file determines it already, and a remark if its law allows none so low.
+
+    Args:
+        known: the gear before
+        estimate: of the file
+        name: of the file
+    """
+    law = known.sliding()
+    is_known = any(plain(path) == BREAKAWAY for path in known.determined_by)
+    if not isinstance(law, WITH_BREAKAWAY) or is_known or estimate.why:
+        return known, ()
+    if estimate.value < law.coulomb:
+        return known, (
+            f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque",
+        )
+    return known.with_sliding(law.replace(breakaway=estimate.value), {"breakaway": estimate.sigma}, name), ()
 
 
 def at_input(file: Recognised, known: GearSoFar) -> tuple[Recording, float]:

@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.presliding import breakaways
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.kinds.at_rest import (
-    WITH_BREAKAWAY,
+    BREAKAWAY,
     AtRest,
     angle_and_effort,
     at_input,
     estimate_of,
     goes_to_and_fro,
+    with_breakaway,
 )
 from strainwave.identification.reading.angles import jumps
 from strainwave.identification.reading.column import Column
@@ -29,7 +30,6 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import first
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.parameters import plain
 from strainwave.statistics.residuals import rms
 from strainwave.statistics.student import SIGNIFICANCE_SIGMA
 
@@ -73,21 +73,14 @@ class Breakaway(AtRest):
         sides = [each for each in ways if each is not None]
         both = _mean(sides)
         off = [abs(ramp.torque) - each.value for ramp in ramps if (each := ways[ramp.torque > 0.0]) is not None]
-        left = rms(np.array(off)) / both.value
-        whole = share_left({"the torque of breakaway": (left, MAX_SHARE_OF_TORQUE)}, name)
+        left = Left(rms(np.array(off)), both.value, "N.m", MAX_SHARE_OF_TORQUE)
+        whole = error_left({"the torque of breakaway": left}, name)
         few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
-        estimates = only_if_explained((estimate_of(both, "gear.friction_input.breakaway", "", uncertain, few),), whole)
-        remarks, (law, after) = [*file.remarks, *_remarks(found, len(ramps))], (known.sliding(), known)
-        is_known = any(plain(path) == "gear.friction_input.breakaway" for path in known.determined_by)
-        if isinstance(law, WITH_BREAKAWAY) and not is_known and not estimates[0].why:
-            if both.value >= law.coulomb:
-                after = known.with_sliding(law.replace(breakaway=both.value), {"breakaway": estimates[0].sigma}, name)
-            else:
-                remarks.append(
-                    f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque"
-                )
+        estimates = only_if_explained((estimate_of(both, BREAKAWAY, "", uncertain, few),), whole)
+        after, below = with_breakaway(known, estimates[0], name)
+        remarks = (*file.remarks, *_remarks(found, len(ramps)), *below)
         checks = (*friction_at_rest(both.value, known.initial.gear, name), whole)
-        return FileResult(name, file, "breakaway of each ramp", estimates, tuple(remarks), checks), after
+        return FileResult(name, file, "breakaway of each ramp", estimates, remarks, checks), after
 
 
 def _remarks(found: BreakawayTorque, ramps: int) -> Iterator[str]:

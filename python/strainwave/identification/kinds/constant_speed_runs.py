@@ -14,7 +14,7 @@ from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.position import FULL_TURN, PositionFit, fit_position
 from strainwave.identification.checks.sizes import opposes_motion
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
@@ -300,8 +300,8 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     found = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
-    left = rms(found.residual) / rms(found.friction)
-    whole = share_left({"friction over the angle": (left, MAX_SHARE_OF_TORQUE)}, listed(names))
+    left = Left(rms(found.residual), rms(found.friction), "N.m", MAX_SHARE_OF_TORQUE)
+    whole = error_left({"friction over the angle": left}, listed(names))
     estimates = only_if_explained(_estimates(found, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
     remarks = list(_of_position(found, len(turning)))

@@ -14,6 +14,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
+from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import (
     friction_of_table,
     hints_of_levels,
@@ -210,7 +211,9 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     best, *others = fit_friction(experiment, gear)
     speed_check = input_speed(experiment.speed, name)
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
-    whole = explained(best.fit, name)
+    whole, order = explained(best.fit, name), np.argsort(experiment.speed, kind="stable")
+    left, varies = best.fit.residuals[0][order], float(np.std(experiment.torque))
+    shaped = judged_shape(left, {"the speed": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
     if any(each.why for each in estimates) and not whole.failed:
@@ -222,8 +225,8 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
         name, file, best.name, estimates,
-        (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table)),
-        (*checks, *([] if any(check.failed for check in checks) else [whole])),
+        (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table), *shaped.remarks),
+        (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
         pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),

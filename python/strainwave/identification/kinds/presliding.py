@@ -11,7 +11,7 @@ from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.presliding import PreslidingCandidate, fit_presliding
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
 from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
     BRISTLES,
@@ -61,7 +61,7 @@ class Presliding(AtRest):
             "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
             float(np.std(loop.torque[begun])), samples=int(begun.sum()),
         )  # fmt: skip
-        whole = share_left({held_out.channel: (held_out.relative, MAX_SHARE_OF_PRESLIDING)}, name)
+        whole = error_left({held_out.channel: Left(held_out.error, held_out.zero, "N.m", MAX_SHARE_OF_PRESLIDING)}, name)
         slid = best.reach >= 1.0 and slides is None
         estimates = only_if_explained(_elements(best, uncertain, slid=slid), whole)
         after, of_law = _with_bristles(best, known, estimates, name, slides)

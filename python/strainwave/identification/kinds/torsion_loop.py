@@ -15,6 +15,7 @@ from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.ranking import rank_loop
+from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import explained
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
@@ -117,15 +118,17 @@ class Torsion(Kind):
         of_set = () if in_series else stiffness_of_loop(file.recording, best.fit, start, name)
         checks = [clipping(file.recording, name), *of_set]
         whole = explained(best.fit, name)
-        shared = _shared(best, gear, loop, friction_measured)
+        shared, left = _shared(best, gear, loop, friction_measured), best.fit.residuals[0]
+        varies = float(np.std(best.fit.experiment.measured))
+        shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
         if not whole.failed:
             fit, estimates = with_set_before(fit, estimates, known, "gear.")
         result = FileResult(
             name, file, best.name, estimates,
-            (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start)),
-            (*checks, *([] if any(check.failed for check in checks) else [whole])),
+            (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start), *shaped.remarks),
+            (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
             pictures=(Picture(curves_of(fit), "loop", "torque" + _place(loop)),),
             held_out=_held_out(best),
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,

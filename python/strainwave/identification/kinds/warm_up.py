@@ -11,11 +11,12 @@ from strainwave import friction
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.candidates.warming import Warming, friction_over_temperature
-from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, only_if_explained, share_left
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
@@ -59,8 +60,8 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
     curves = _curves(series, effort, found)
     means = curves[f"friction_of_{effort}"]
-    left = float(np.linalg.norm(means - curves["modelled"]) / max(float(np.linalg.norm(means)), 1e-300))
-    whole = share_left({"friction over the temperature": (left, MAX_SHARE_OF_TORQUE)}, file.path.name)
+    left = Left(rms(means - curves["modelled"]), rms(means), level.unit, MAX_SHARE_OF_TORQUE)
+    whole = error_left({"friction over the temperature": left}, file.path.name)
     return FileResult(
         file.path.name, file, "friction over the temperature", only_if_explained(estimates, whole), remarks, (whole,),
         pictures=(Picture(curves, "means"),),

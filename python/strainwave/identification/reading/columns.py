@@ -50,7 +50,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
     by_user = _by_user(table, mapping)
     named = _of_one_time(_by_name(table, mapping, by_user))
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
-    found = by_user + _of_one_joint(table, own, mapping)
+    found = by_user + _of_one_joint(table, own, mapping, by_user)
     is_stated = any(column.channel.quantity in EFFORTS for column in by_user)
     names = set[str]() if is_stated else {column.name for column in found}
     return found, [remark for name, remark in remarks.items() if name in names]
@@ -238,10 +238,10 @@ def _of_joint(table: OpenTable, wanted: str, joint: str | None) -> list[int]:
 # ---- One for each channel --------------------------------------------------------------------------------------------
 
 
-def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> list[Column]:
+def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapping, by_user: Sequence[Column]) -> list[Column]:
     """Return one column for each channel: those of the joint that is asked for, or the one whose name has no further word.
 
-    If no name contains a joint, they are those of the one that is asked for.
+    If no name contains a joint, they are those of the one that is asked for. Columns that a person named are not among them.
     """
     groups: dict[Channel, list[Column]] = {}
     for column in columns:
@@ -251,7 +251,7 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
     known = joints or list(dict.fromkeys(column.which for column in columns if column.which))
     if mapping.joint is not None and known:
         joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
-        if joint not in known:
+        if joint not in {*known, *(which_of(words_of(column.label.name)) for column in by_user)}:
             raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
         return _with_neighbours(columns, joint, known)
     quantities = {column.channel.quantity for column in columns} - set(USUAL_FIRST)

@@ -70,7 +70,7 @@ class FileMapping:
         columns: for each channel the name or the number of its column in the file
         units: unit of each channel whose header states none
         sign: 1 or -1 for each channel that counts the other way
-        constants: numbers that belong to the recording, of `CONSTANTS`, in SI units
+        constants: numbers that belong to the recording, of `CONSTANTS`, in SI units or as "75 mN.m/A"
         kind: of measurement, if the file leaves it open
         side: of a friction table, or of the channels of a log whose names contain none
         joint: number or name of the joint to take of several
@@ -80,12 +80,14 @@ class FileMapping:
 
     >>> FileMapping(columns={"speed": "3"}, units={"speed": "U/min"})
     FileMapping(columns={'speed': '3'}, units={'speed': 'U/min'}, sign={}, constants={}, kind=None, side=None, joint=None)
+    >>> FileMapping(constants={"torque_constant": "75 mN.m/A"}).constants
+    {'torque_constant': 0.075}
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     sign: Mapping[str, int] = field(default_factory=dict)
-    constants: Mapping[str, float] = field(default_factory=dict)
+    constants: Mapping[str, Any] = field(default_factory=dict)
     kind: str | None = None
     side: Side | None = None
     joint: str | None = None
@@ -98,9 +100,8 @@ class FileMapping:
         for name, wanted in self.columns.items():
             if wanted.count(",") >= MAX_NAMED:
                 raise ValueError(f"--column {name} names {wanted.count(',') + 1} columns; at most {MAX_NAMED} are taken")
-        for name in self.constants:
-            _check_known(f"--constant {name}", name, CONSTANTS, "constants")
-            check_constant(f"--constant {name}", name, self.constants[name])
+        constants = {name: _constant(f"--constant {name}", value) for name, value in self.constants.items()}
+        object.__setattr__(self, "constants", constants)
         for unit in self.units.values():
             check_unit(unit)
         for name, sign in self.sign.items():
@@ -200,8 +201,10 @@ def _constant(place: str, value: object) -> float:
         except ValueError as error:
             if is_number(number):
                 raise ValueError(f"{place} = {quoted(value)}: {error}") from None
-            raise ValueError(f"{place} = {quoted(value)}: it is no number in {wanted}") from None
-    if isinstance(value, bool) or not isinstance(value, int | float) or value != value:
+            raise ValueError(
+                f"{place} = {quoted(value)}: it is no number in {wanted}, nor one with its unit, as '0.1 {wanted}'"
+            ) from None
+    if isinstance(value, bool) or not isinstance(value, int | float):
         raise ValueError(f"{place} = {shortened(value)} must be a number in {wanted}, or a text with number and unit")
     return check_constant(place, name, value)
 
@@ -224,15 +227,6 @@ def check_constant(place: str, name: str, value: float) -> float:
     if signed:
         return arguments.sized(place, value, written, low, high)
     return arguments.number(place, value, written, "[]", low, high)
-
-
-def constant_of(name: str, value: str) -> float:
-    """Return a constant in SI units, from the value of an option.
-
-    >>> constant_of("torque_constant", "75 mN.m/A")
-    0.075
-    """
-    return _constant(f"--constant {name}", value)
 
 
 def _check_known(place: str, name: str, known: Collection[str], what: str) -> None:

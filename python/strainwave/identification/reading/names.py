@@ -48,6 +48,8 @@ QUANTITIES: dict[Quantity, tuple[str, ...]] = {
     "temperature": ("temperature", "temperatures", "temp", "temperatur", "temperatura", "temper"),
     "vibration": ("vibration", "vibrations", "vib", "schwingung", "vibrazione", "vibracion", "accelerometer"),
 }  # fmt: skip
+BACKDRIVING = ("backdriving", "backdrive")  # a torque of the output at which the input begins to turn
+STARTING = ("starting", "breakaway", "losbrech", "losbrechmoment", "anlauf", "anlaufmoment", *BACKDRIVING)  # torques at rest
 SIDES: dict[Side, tuple[str, ...]] = {
     "input": (
         "motor", "mot", "moteur", "motore", "input", "in", "eingang", "eingangs", "antrieb", "antriebs", "rotor", "wave", "wg",
@@ -55,7 +57,7 @@ SIDES: dict[Side, tuple[str, ...]] = {
     ),
     "output": (
         "output", "out", "joint", "jnt", "link", "load", "ausgang", "ausgangs", "abtrieb", "abtriebs", "gelenk", "last", "arm",
-        "flexspline", "articulation", "sortie", "salida", "uscita", "secondary", "j",
+        "flexspline", "articulation", "sortie", "salida", "uscita", "secondary", "j", *BACKDRIVING,
     ),
 }  # fmt: skip
 COMMANDED = (
@@ -67,7 +69,7 @@ NEUTRAL = (
     "actual", "act", "measured", "meas", "mes", "msr", "ist", "istwert", "mess", "value", "wert", "signal", "raw", "data",
     "sensor", "state", "states", "side", "seite", "angular", "rotational", "generator", "shaft", "welle", "of", "at", "the",
     "rig", "fb", "feedback", "axis", "achse", "phase", "rms", "ambient", "case", "housing", "oil", "steady", "present",
-    "average", "avg", "avr", "mean",
+    "average", "avg", "avr", "mean", "running", "idle", "idling", *STARTING,
 )  # fmt: skip
 # Words of columns that are no measurement of the quantity in their names.
 OTHERS = (
@@ -105,6 +107,11 @@ QUANTITY_OF: dict[str, Quantity] = {word: quantity for quantity, words in QUANTI
 _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for word in words}
 _WORDS = (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS, *ESTIMATED, *SHARES)
 _VOCABULARY = {word for word in _WORDS if len(word) > 2 and word not in ("par", "the")}
+PHRASES = {
+    r"(?<![a-z])no[\s_-]*load(?![a-z])": "idle",
+    r"(?<![a-z])break[\s_-]away": "breakaway",
+    r"(?<![a-z])back[\s_-]driv": "backdriv",
+}  # of two words
 _GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
 _UNIT_NAMES = {"rpm": "rpm"}  # words for quantity and unit
 
@@ -214,12 +221,32 @@ def words_of(name: str) -> list[str]:
     """
     plain = unicodedata.normalize("NFKD", name.translate(_GREEK))
     plain = "".join(each for each in plain if not unicodedata.combining(each))
-    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain)
+    apart = _one_word(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain))
     found: list[str] = []
     for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
         found += SYMBOLS.get(word) or _parts(word) or _singular(word)
     is_of_drive = found[1:2] == ["q"] and found[0] in ("i", "u")  # i_q and u_q of a field-oriented one
     return [f"{found[0]}q", *found[2:]] if is_of_drive else found
+
+
+def is_at_rest(name: str) -> bool:
+    """True for the name of a torque at which a shaft begins to turn.
+
+    >>> is_at_rest("Starting torque"), is_at_rest("Losbrechmoment"), is_at_rest("running torque")
+    (True, True, False)
+    """
+    return not {*STARTING}.isdisjoint(words_of(name))
+
+
+def _one_word(name: str) -> str:
+    """Return a name with one word in place of phrases whose parts mean something else, as the load in no-load.
+
+    >>> _one_word("no-load running torque")
+    'idle running torque'
+    """
+    for phrase, word in PHRASES.items():
+        name = re.sub(phrase, word, name, flags=re.IGNORECASE)
+    return name
 
 
 def _singular(word: str) -> list[str]:

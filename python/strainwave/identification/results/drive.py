@@ -30,7 +30,6 @@ from strainwave.parameters import gear_numbers, plain
 
 Array = NDArray[np.float64]
 
-MAX_NAME = 60  # letters of the name of a gear that is made of those of its files
 MIN_LOAD_DIFFERENCE = 3.0  # standard deviations: two logs that differ by more carry different loads
 MIN_LOAD_SHARE = 1e-3  # of the inertia of the rotor at the output [1]: a load with less changes no torque measurably
 PARTS_OF_TORQUE = {
@@ -72,7 +71,7 @@ def drive_set(
 def name_of_files(files: Sequence[FileResult]) -> str:
     """Return a name for the gear of some files, as `gear of joint_5`."""
     first = next((each for each in files if each.estimates), files[0])
-    stem = one_line(Path(first.name).stem)[:MAX_NAME]
+    stem = one_line(Path(first.name).stem)
     joint = first.recognised.joint if first.recognised is not None else ""
     of = f"joint {joint} of {stem}" if joint and joint not in stem else stem
     return f"gear of {of}" + (f" and {len(files) - 1} more" if len(files) > 1 else "")
@@ -81,8 +80,9 @@ def name_of_files(files: Sequence[FileResult]) -> str:
 def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult], best: FileResult | None) -> str:
     """Return from which files and which set a gear comes, and whose load it carries."""
     maker = f" of {start.maker}" if start.maker else ""
+    read = ", ".join(one_line(each.name) for each in files) or "no file"
     notes = [
-        f"Identified from {listed(each.name for each in files) or 'no file'}, starting from {start.name}{maker}: numbers that "
+        f"Identified from {read}, starting from {start.name}{maker}: numbers that "
         "no file determines, and ratings, are of that set."
     ]
     if best is not None and (others := [each for each in logs if each is not best and _differs(best, each)]):

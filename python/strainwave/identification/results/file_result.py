@@ -235,11 +235,16 @@ class FileResult(ComparedByFields, Pictured):
         return tuple(check for check in self.checks if check.failed)
 
     def _headline(self) -> str:
+        return f"{self.name}: {self.in_words}"
+
+    @property
+    def in_words(self) -> str:
+        """Kind of the file, its model, and the error of that or why the file was not used."""
         if self.refused:
-            return f"{self.name}: {self.title}, NOT USED: {self.refused}"
+            return f"{self.title}, NOT USED: {self.refused}"
         failed = f", {counted(len(self.failed), 'check')} FAILED" if self.failed else ""
         held_out = "" if self.held_out is None else f", {self.held_out._headline()}"
-        return f"{self.name}: {self.title}, {self.model}{held_out}{failed}"
+        return f"{self.title}, {self.model}{held_out}{failed}"
 
     def _rows(self) -> Iterator[Row]:
         yield Row("file", self.name)

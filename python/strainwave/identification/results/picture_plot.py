@@ -35,6 +35,7 @@ def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
     if picture.look not in _RESIDUAL:
         return draw_measured(figure, picture)
     shared = picture.look != "loop"
+    whole: Axes
     whole, left = figure.subplots(2, 1, sharex=shared, height_ratios=(2.2, 1.0))
     _MEASURED[picture.look](whole, picture)
     if shared:
@@ -155,7 +156,8 @@ def _series(axes: Axes, picture: Picture) -> None:
 
 def _series_residual(axes: Axes, curves: Recording) -> None:
     over, residual = curves.names[0], residual_of(curves)
-    marks.residual_curve(axes, *_broken(curves[over], residual), LIGHT["ink"])
+    place, broken = _broken(curves[over], residual)
+    marks.residual_curve(axes, place, broken, LIGHT["ink"])
     _bands(axes, curves[over], residual, _sigma(curves))
     below = "left by orders and loads" if "residual" in curves else "measured − modelled"
     marks.label_axes(axes, below, curves.unit(curves.names[1]), over.replace("_", " "), curves.unit(over))

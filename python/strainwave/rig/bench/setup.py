@@ -32,8 +32,8 @@ class Value:
     >>> bench = sw.rig.Rig("bench", "input", disk_radius=sw.rig.Value(0.1, 5e-5, "calliper"))
     >>> print(sw.rig.torque_budget(bench, sw.rig.Step(1, mass_positive=0.35)))
     Budget: torque 0.34323 ± 0.00072 N·m (0.21 %)
-      gravity                 0.0007  N·m  94 % of the variance, common
-      radius of the disk  0.00017162  N·m  6 % of the variance, common
+      gravity                 0.0007  N·m  94 %, common
+      radius of the disk  0.00017162  N·m  6 %, common
     """
 
     value: float

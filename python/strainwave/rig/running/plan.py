@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal, NamedTuple, get_args
 
-from strainwave import arguments
+from strainwave import arguments, typeset
 from strainwave.files.gear_file import at
-from strainwave.messages import one_line
-from strainwave.presentation import Presented
+from strainwave.presentation import Presented, Row, counted
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 
@@ -74,12 +73,15 @@ class Plan(Presented):
         """Return the masses on the pans at each step."""
         return tuple(stage.step for stage in self.stages)
 
-    def __str__(self) -> str:
-        """Return the plan as a table to be printed for the rig."""
-        head = f"{'step':>4}  {'position':>8}  {'torque':>9}  {'positive':>8}  {'negative':>8}  {'stage':<18}  task"
-        units = f"{'':>4}  {'[deg]':>8}  {'[N.m]':>9}  {'[g]':>8}  {'[g]':>8}"
-        rows = [_row(stage) for stage in self.stages]
-        return "\n".join([*self.remarks, "", head, units, *rows])
+    def _headline(self) -> str:
+        return f"{counted(len(self.stages), 'step')} to {typeset.quantity(self.peak, 'N.m')}"
+
+    def _rows(self) -> Iterator[Row]:
+        for stage in self.stages:
+            step = stage.step
+            place = f"{math.degrees(step.position):g}° {step.unit}".rstrip()
+            masses = f"{1e3 * step.mass_positive:.6g} g and {1e3 * step.mass_negative:.6g} g"
+            yield Row(f"step {step.number}", stage.torque, "N.m", note=f"at {place}, {masses}, {stage.name}: {stage.task}")
 
 
 def plan(
@@ -322,13 +324,6 @@ def _pieces(masses: Counter[float]) -> str:
 
 def _grams(mass: float) -> str:
     return f"{1e3 * mass:.6g} g"
-
-
-def _row(stage: PlannedStep) -> str:
-    step = stage.step
-    place = f"{math.degrees(step.position):g}" + (f" {step.unit}" if step.unit else "")
-    masses = f"{1e3 * step.mass_positive:>8.6g}  {1e3 * step.mass_negative:>8.6g}"
-    return one_line(f"{step.number:>4}  {place:>8}  {stage.torque:>+9.4f}  {masses}  {stage.name:<18}  {stage.task}")
 
 
 def _remarks(

@@ -53,8 +53,8 @@ class Budget(Presented):
     (0.0005, 0.64)
     >>> print(budget)
     Budget: torque 0.36000 ± 0.00050 N·m (0.14 %)
-      radius  0.0004  N·m  64 % of the variance, common
-      masses  0.0003  N·m  36 % of the variance, random
+      radius  0.0004  N·m  64 %, common
+      masses  0.0003  N·m  36 %, random
     """
 
     quantity: str
@@ -87,7 +87,7 @@ class Budget(Presented):
 
     def _rows(self) -> Iterator[Row]:
         for each in self.contributions:
-            share = f"{100.0 * self.share(each):.0f} % of the variance, {each.kind}"
+            share = f"{100.0 * self.share(each):.0f} %, {each.kind}"
             yield Row(each.name, each.sigma, self.unit, note=share)
 
 
@@ -111,14 +111,11 @@ def torque_budget(rig: Rig, step: Step, angle: float = 0.0) -> Budget:
     >>> from strainwave import rig
     >>> print(torque_budget(rig.load("couple-rig"), rig.Step(1, mass_positive=0.35)))
     Budget: torque 0.3432 ± 0.0035 N·m (1 %)
-      friction of the pulleys, share of the torque   0.0034323  N·m
-          96 % of the variance, by direction
-      gravity                                           0.0007  N·m
-          4 % of the variance, common
-      masses                                        0.00017336  N·m
-          0 % of the variance, random
-      radius of the disk                            0.00017162  N·m
-          0 % of the variance, common
+      friction of the pulleys, share of the torque
+                           0.0034323  N·m  96 %, by direction
+      gravity                 0.0007  N·m  4 %, common
+      masses              0.00017336  N·m  0 %, random
+      radius of the disk  0.00017162  N·m  0 %, common
     """
     force = rig.gravity.value * rig.disk_radius.value * float(arm(rig, angle))
     torque = force * (step.mass_positive - step.mass_negative)
@@ -192,16 +189,12 @@ def stiffness_budget(
     >>> steps = [Step(n, mass_positive=0.05 * n) for n in range(1, 8)]
     >>> print(stiffness_budget(load("couple-rig"), 4.51, steps, angle_sigma=4e-5))
     Budget: stiffness 4.510 ± 0.046 N·m/rad (1 %)
-      friction of the pulleys, share of the torque     0.0451  N·m/rad
-          95 % of the variance, by direction
-      gravity                                       0.0091978  N·m/rad
-          4 % of the variance, common
-      reading of the markers                        0.0031358  N·m/rad
-          0 % of the variance, random
-      radius of the disk                             0.002255  N·m/rad
-          0 % of the variance, common
-      masses                                        0.0022435  N·m/rad
-          0 % of the variance, random
+      friction of the pulleys, share of the torque
+                                 0.0451  N·m/rad  95 %, by direction
+      gravity                 0.0091978  N·m/rad  4 %, common
+      reading of the markers  0.0031358  N·m/rad  0 %, random
+      radius of the disk       0.002255  N·m/rad  0 %, common
+      masses                  0.0022435  N·m/rad  0 %, random
     """
     arguments.number("stiffness", stiffness, "N.m/rad", low=0.0)
     budgets = [torque_budget(rig, step, angle) for step in steps]

@@ -231,5 +231,5 @@ def test_a_torque_that_no_bristle_follows_fails_the_check_and_determines_nothing
     torque = np.cumsum(np.random.default_rng(0).standard_normal(len(angle))) * 1e-3
     columns = {"time": 0.01 * np.arange(len(angle)), "angle": angle, "torque": torque}
     found = sw.identify("csg-20-100", {"presliding": sw.Recording(columns, {"time": "s", "angle": "rad", "torque": "N.m"})})
-    assert "share left unexplained" in [check.name for check in found.failed]
+    assert "error left unexplained" in [check.name for check in found.failed]
     assert found.parameters == ()

@@ -44,7 +44,7 @@ def test_a_prior_bounds_what_the_data_do_not() -> None:
 def test_what_the_data_do_not_touch_is_open_to_both_sides() -> None:
     drawn = profile(sw.fit(sw.Gear(friction_input=LAW, damping=3.0), table(0), [*FREE, "damping"]), "damping")
     assert (drawn.open_below, drawn.open_above, drawn.interval) == (True, True, (0.0, np.inf))
-    assert str(drawn) == "damping is not determined: the data bound it to neither side"
+    assert drawn.to_dict()["summary"] == "damping is not determined: the data bound it to neither side"
 
 
 def test_a_slip_that_the_twist_never_reaches_is_open_above() -> None:
@@ -65,7 +65,7 @@ def test_a_slip_that_the_twist_never_reaches_is_open_above() -> None:
     assert never.open_above
     assert not never.open_below
     assert 4.0 < never.interval[0] < 11.0  # it carries up to 10 N.m along this path, without slip
-    assert "the data do not determine how large it is" in str(never)
+    assert "the data do not determine how large it is" in never.to_dict()["summary"]
 
 
 def test_an_unknown_that_the_fit_does_not_have_is_refused() -> None:

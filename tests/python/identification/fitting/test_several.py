@@ -88,7 +88,7 @@ def test_what_each_record_has_for_itself_is_in_its_own_model() -> None:
     assert [part.model.friction_input.viscous for part in found.parts] == pytest.approx([9e-4, 4e-4], rel=1e-6)
     assert found.model == found.parts[0].model
     assert [part.name for part in found.parts] == ["record 1", "record 2"]
-    assert "residual of torque @ record 2" in str(found)
+    assert "rms of torque @ record 2" in str(found)
     with pytest.raises(ValueError, match="the fit is to 2 records; take it from one of its parts"):
         _ = found.predicted
 

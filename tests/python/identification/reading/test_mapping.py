@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, strategies as st
 from strainwave.identification.reading.channels import CHANNELS
-from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile, constant_of
+from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
 
 TEXT = """
 side = "output"
@@ -66,7 +66,7 @@ def test_a_mapping_holds_for_all_files_or_for_some(tmp_path: Path) -> None:
         ('constants.rate = "fast"', 'constants.rate = "fast": it is no number in Hz'),
         ('constants.speed = "3 Nm"', 'constants.speed = "3 Nm": cannot convert "Nm" to "rad/s"'),
         ("constants.rate = true", "constants.rate = True must be a number in Hz, or a text with number and unit"),
-        ("constants.rate = nan", "constants.rate = nan must be a number in Hz, or a text with number and unit"),
+        ("constants.rate = nan", "constants.rate = nan Hz must lie in [1e-06, 1e+09]"),
         ('side = "middle"', "side = 'middle' is not known; the sides are input, output"),
         ('kind = "torsoin"', "kind = 'torsoin' is not known; did you mean torsion? The kinds are "),
         ('["*.csv"]\ncolums.a = 1', '["*.csv"] colums is not known; did you mean columns? '),
@@ -104,7 +104,7 @@ def test_a_constant_out_of_its_range_is_refused_however_it_is_given(name: str, v
 def test_other_digits_than_ascii_are_no_number() -> None:
     for text in ("\u0661\u0662", "1_0", "inf", "nan", "0x10", "1e400"):
         with pytest.raises(ValueError, match=r"^--constant rate = .* (it is no number in Hz|is too large a number)$"):
-            constant_of("rate", text)
+            FileMapping(constants={"rate": text})
 
 
 def test_a_mapping_is_read_from_a_small_regular_file_alone(tmp_path: Path) -> None:
@@ -129,3 +129,9 @@ def test_updates_are_associative_and_an_empty_one_changes_nothing(
 ) -> None:
     assert one.updated(two).updated(three) == one.updated(two.updated(three))
     assert one.updated(FileMapping()) == one == FileMapping().updated(one)
+
+
+def test_a_constant_is_a_number_or_a_text_with_its_unit() -> None:
+    assert FileMapping(constants={"torque_constant": "75 mN.m/A"}).constants == {"torque_constant": 0.075}
+    with pytest.raises(ValueError, match="torque_constant"):
+        FileMapping(constants={"torque_constant": "75 N"})

@@ -63,9 +63,12 @@ def test_unequal_pans_are_changed_in_turn() -> None:
 
 
 def test_a_plan_prints_a_row_for_each_step() -> None:
-    text = str(plan(RIG, positions=[math.radians(60.0)]))
-    assert len(text.splitlines()) == 3 + 1 + 2 + 29
-    assert "   2        60    +0.2943       300         0  positive unloading  positive pans: take 25 g off each" in text
+    made = plan(RIG, positions=[math.radians(60.0)])
+    rows = made.to_dict()["rows"]
+    assert len(rows) == 29
+    note = "at 60°, 300 g and 0 g, positive unloading: positive pans: take 25 g off each"
+    assert (round(rows["step 2"]["value"], 4), rows["step 2"]["note"]) == (0.2943, note)
+    assert all(f"  {name} " in str(made) for name in rows)
 
 
 def test_too_few_small_masses_are_told() -> None:
