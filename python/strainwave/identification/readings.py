@@ -185,7 +185,8 @@ def _most_probable(
         assert first.record is not None
         what = listed(dict.fromkeys(way.effort.described for way in near if way.effort is not None))
         question = f"{first.effort.column} may be {what}, and neither its name nor a fit decides; {usual.shown(first.record)}"
-    asked = near + [ways[0] for ways in by_reading if not set(ways) & set(near)]
+    shown, first_of = {way.reading for way in near}, {ways[0].reading: ways[0] for ways in by_reading}
+    asked = [way for way in every if way in near or (way.reading not in shown and way is first_of[way.reading])]
     ranked = sorted(asked, key=lambda way: -way.evidence) if is_of_same_columns else asked
     raise QuestionError(one_line(question), [way.answer for way in ranked[:MAX_ANSWERS]])
 

@@ -198,10 +198,15 @@ def test_the_sides_of_two_angles_are_determined_by_their_ranges(tmp_path: Path, 
     found = recognise(written(tmp_path / "a.csv", columns))
     assert (found.columns["input_angle"], found.columns["output_angle"]) == ("theta", "q")
     assert any("so it is that of the input" in why for why in found.why)
-    scaled = columns | {"theta": columns["theta"] / JOINT.ratio}
-    with pytest.raises(QuestionError, match=r"which of q and theta is that of the motor is not determined") as asked:
+    scaled = {
+        "time": seen["time"],
+        "phi": columns["theta"] / JOINT.ratio,
+        "theta": columns["q"],
+        "tau_J": columns["tau_J"],
+    }
+    with pytest.raises(QuestionError, match=r"which of .* is that of the motor is not determined") as asked:
         recognise(written(tmp_path / "b.csv", scaled))
-    sides = {"--column input_angle=theta --column output_angle=q", "--column input_angle=q --column output_angle=theta"}
+    sides = {f"--column input_angle={a} --column output_angle={b}" for a, b in (("phi", "theta"), ("theta", "phi"))}
     assert set(options_of(asked.value)) == sides
 
 
