@@ -76,9 +76,9 @@ private:
             wave = Four{base.sin, base.cos, sine, cosine};
             step = Four{} + (cosine + cosine);
         }
-        void add(const Waves& value, const Waves& slope) {
-            values = values + all(value) * wave;
-            slopes = slopes + all(slope) * wave;
+        void add(const Waves& of_value, const Waves& of_slope) {
+            values = values + all(of_value) * wave;
+            slopes = slopes + all(of_slope) * wave;
             const Four next = step * wave - before;
             before = wave;
             wave = next;

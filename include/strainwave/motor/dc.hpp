@@ -99,9 +99,9 @@ struct DC {
         }
         constexpr Power<S> power(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             const S i = current(x, voltage, rotor), copper = winding.resistance_at(rotor.temperature) * i * i;
-            const S inductance = select(per_inductance > S(0.0), S(1.0) / max(per_inductance, S(smallest)), S(0.0));
+            const S of_winding = select(per_inductance > S(0.0), S(1.0) / max(per_inductance, S(smallest)), S(0.0));
             return {voltage * i, copper + brush_drop * abs(i) + (back_emf - torque_constant) * rotor.speed * i,
-                    cogging.stored_with(S(0.5) * inductance * i * i, rotor.angle)};
+                    cogging.stored_with(S(0.5) * of_winding * i * i, rotor.angle)};
         }
         constexpr State rate(const State& x, const S& voltage, const Rotor<S>& rotor) const {
             return {(voltage - winding.resistance_at(rotor.temperature) * x.current - back_emf * rotor.speed) * per_inductance};
