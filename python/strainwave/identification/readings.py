@@ -193,7 +193,8 @@ def _most_probable(
 
 def _sensible(readings: Sequence[_Reading]) -> list[_Reading]:
     """Return the readings in which a gear may move; of a joint of which none is so, all."""
-    moving = {each.answer.given.get("joint") for each in readings if not each.contradiction}
+    fitted = [each for each in readings if each.file is not None]
+    moving = {each.answer.given.get("joint") for each in fitted if not each.contradiction}
     return [each for each in readings if not each.contradiction or each.answer.given.get("joint") not in moving]
 
 
