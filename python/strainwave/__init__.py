@@ -11,8 +11,6 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-import lazy_loader
-
 try:
     import_module("strainwave._core")
 except Exception as error:  # in a clone also one of the build, which compiles what was edited
@@ -26,6 +24,8 @@ except Exception as error:  # in a clone also one of the build, which compiles w
         f"`source .venv/bin/activate` finds the tools for that; a wheel must be one for Python "
         f"{sys.version_info.major}.{sys.version_info.minor} on {sysconfig.get_platform()}"
     ) from None
+import lazy_loader
+
 from strainwave import presented_models as _presented_models
 from strainwave._core import Gear
 

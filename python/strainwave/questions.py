@@ -6,10 +6,12 @@ import re
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import accumulate
 from typing import Any
 
 from strainwave.messages import printable
 
+MAX_MESSAGE = 800  # characters of an error in Python; the command prints each answer on a line of its own
 NUMBER = "NUMBER"  # stands in an answer for a number that only a person knows
 ALL_JOINTS = "all"  # in place of the name of a joint
 TABLES = {"columns": "--column", "units": "--unit", "constants": "--constant"}  # arguments with an option for each entry
@@ -101,7 +103,10 @@ the motor with --side input (in Python FileMapping(side="input"))
             f"{each.label} with {shlex.join(each.options)}{python}"
             for each, python in zip(self.answers, in_python, strict=True)
         ]
-        super().__init__(_on_one_line(f"{question}{': ' * bool(ways)}{', or '.join(ways)}"))
+        ends = list(accumulate(map(len, ways), initial=len(question)))
+        shown = [way for way, end in zip(ways, ends[1:], strict=True) if end <= MAX_MESSAGE] or ways[:1]
+        more = f", or {len(ways) - len(shown)} more, of which `answers` has all" if len(shown) < len(ways) else ""
+        super().__init__(_on_one_line(f"{question}{': ' * bool(ways)}{', or '.join(shown)}{more}"))
 
     def of(self, name: str) -> QuestionError:
         """Return the question with the name of its file in front."""

@@ -119,7 +119,7 @@ def valid() -> Mapping[str, Any]:
     recording = sw.Recording({"time": [0.0, 1.0], "speed": [1.0, 2.0]}, {"time": "s", "speed": "rad/s"})
     return {
         "drive": drive, "command": command, "parameters": ["load.inertia"], "dt": 1e-3, "sample": 2e-3, "load_torque": 0.1,
-        "temperature": 300.0, "start": drive.rest(), "state": drive.rest(), "method": "exponential", "progress": False,
+        "temperature": 300.0, "start": 0.0, "state": drive.rest(), "method": "exponential", "progress": False,
         "rtol": 1e-6, "atol": 1e-9, "max_steps": 500, "record": ["torque"], "threads": 1, "folder": "members",
         "frequency": 50.0, "amplitude": 0.1, "input": "command", "tolerance": 1e-2, "max_periods": 3, "command_rate": 0.0,
         "duration": 1.0, "value": 1.0, "rate": 1.0, "phase": 0.0, "offset": 0.0, "start_frequency": 1.0, "stop_frequency": 2.0,
@@ -150,7 +150,7 @@ def valid() -> Mapping[str, Any]:
         "trace.angle": 0.0, "trace.load": 0.0, "trace.speed": [1.0, 2.0, 1.0], "trace.state": UNKNOWN,
         "advance.state": UNKNOWN, "work.state": UNKNOWN, "stored.state": UNKNOWN, "error.torque": 0.0, "slope.torque": 0.0,
         "step.command": 0.1, "step.load_torque": 0.0, "step.dt": 1e-4, "torque.twist": [0.0, 1e-3], "sine.frequency": 1.0,
-        "Recording.columns": {"time": [0.0, 1.0]}, "frequency_response.start": None, "compare.first": recording,
+        "Recording.columns": {"time": [0.0, 1.0]}, "frequency_response.initial": None, "compare.first": recording,
         "compare.second": recording, "inputs": {"load_torque": 0.1}, "initial": {"output_angle": 0.1},
         "read.drive": drive, "save.drive": drive, "ScenarioFile.save.path": "file.toml",
         "orders.recording": turning(), "order_spectrum.recording": turning(), "column": "torque", "order": [2.0],

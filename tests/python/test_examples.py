@@ -24,7 +24,7 @@ SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
 SLOW_MODULES = (
     "compensate.py",
-    "detection_limit.py",
+    "smallest_error.py",
     "recovery.py",
     "misalignment_sweep.py",
     "influence.py",

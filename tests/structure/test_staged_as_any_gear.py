@@ -204,7 +204,7 @@ def test_no_body_within_accelerates_where_a_run_begins(fixed: str, initial: dict
     gear = everywhere(GEAR).replace(kinematics=FIXED[fixed], kinematic_error=SCALED)
     drive = DRIVE.replace(gear=gear)
     load = np.array([0.0, 0.0, 5.0, 0.0, 293.15, 0.0])
-    start = beginning_numbers(drive, None, initial, load)
+    start = beginning_numbers(drive, initial, load)
     layout = StateLayout(drive)
     rates = dict(zip(layout.names, _core.differentiate_rates(drive, start, load)[0], strict=False))
     inertia = {"generator": 2e-5, "radial": 0.08 * (0.025 / tan(pi / 6.0)) ** 2, "held": 5e-5, "driving": 5e-5}

@@ -199,7 +199,7 @@ def test_bodies_that_warm_up_faster_than_a_step_are_refused_with_the_step_that_d
     )
     flows = np.array([[0.5 + coupling, -coupling], [-coupling, 0.2 + coupling]])
     drive = flywheel(COIL, friction_input=sw.friction.Viscous(viscous=0.001)).replace(thermal=body)
-    acting = {"start": turning(drive, SPEED), "sample": 1e-3}
+    acting = {"initial": turning(drive, SPEED), "sample": 1e-3}
     with pytest.raises(FloatingPointError, match=r"take dt = \S+ s or less") as refused:
         sw.simulate(drive, sw.scenario.constant(2.0, 1e-3), 1e-4, **acting)
     found = re.search(r"take dt = (\S+) s or less", str(refused.value))

@@ -92,7 +92,7 @@ def open_regular(path: str | Path) -> BinaryIO:
         RefusedFile: it is a FIFO, a device or a socket, which may never end
         OSError: there is no such file, or it may not be read
     """
-    descriptor = os.open(path, READ_FLAGS)
+    descriptor = os.open(Path(path), READ_FLAGS)  # a number would be an open file
     mode = os.fstat(descriptor).st_mode
     if not stat.S_ISREG(mode):
         os.close(descriptor)

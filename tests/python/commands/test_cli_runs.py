@@ -196,7 +196,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["compare", "a.csv", "speed.csv"], ('column "torque": cannot convert "rad/s" to "N.m"; name the columns',)),
         (["compare", "joint.toml", "mine.toml", "--column", "x"], ("--column x: of gears and drives all",)),
         (["compare", "hfuc-25-100", "hfuc-25-101"], ('"hfuc-25-101"', "hfuc-25-100")),
-        (["show"], ("Missing argument 'gear'",)),
+        (["show"], ("Missing argument 'name'",)),
         (["show", "nothing"], ('no set "nothing"',)),
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),
         (["show", "a.csv"], ("a.csv holds measurements",)),

@@ -55,7 +55,7 @@ def test_every_export_is_a_verb(tmp_path: Path) -> None:
     functions = {name for name in sw.export.__all__ if name.islower()} - {"read_bam"}
     assert {form.write.__name__ for form in FORMS} == functions
     shown = strainwave("export", "--help", folder=tmp_path).stdout
-    assert [line.split()[0] for line in shown.partition("Commands:")[2].splitlines() if line] == [
+    assert [line.split()[0] for line in shown.partition("Verbs:")[2].splitlines() if line[:3].strip()] == [
         *(form.verb for form in FORMS),
         "from-bam",
     ]
@@ -92,9 +92,8 @@ def test_parameters_of_bam_become_a_gear_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
-        (("joint", "hfuc-25-100"), "--max-torque 100"),
         (("mjcf", "csg-20-100"), "--load-inertia"),
-        (("mjcf", "csg-20-100", "--into", "."), "cannot be read"),
+        (("mjcf", "csg-20-100", "--into", "."), "into and joint belong together"),
         (("bam", "csg-20-100"), "add a [motor] to the file"),
         (("firmware", "csg-20-100"), "give --motor and --load, as --motor robot-joint --load Inertia"),
         (("fmu", "csg-20-100", "--load", "Inertia"), "has no [motor]"),

@@ -155,11 +155,11 @@ def test_the_command_writes_a_page_and_numbers_and_ends_in_3_if_a_recording_cont
     options = ("--joint", "1", "--constant", "torque_constant=0.12", "--constant", "ratio=100")
     same = strainwave("predict", "gear.toml", "same.csv", *options, "--out", "same", folder=folder)
     assert same.returncode == 0, same.stderr
-    assert "same.csv agrees with gear of joint 1 of first: error " in same.stdout
+    assert "same.csv agrees with gear of joint 1 of first: RMS error " in same.stdout
     assert "nothing changed significantly." in same.stdout
     both = strainwave("predict", "gear.toml", "same.csv", "worn.csv", *options, "--out", "both", folder=folder)
     assert both.returncode == 3
-    assert "worn.csv contradicts gear of joint 1 of first: error " in both.stdout
+    assert "worn.csv contradicts gear of joint 1 of first: RMS error " in both.stdout
     dry, sigma = map(float, re.findall(r"; dry friction is (\S+) ± (\S+) times that saved\.", both.stdout)[0])
     assert abs(dry - 1.3) < 3.0 * sigma < 0.05
     assert "plain least squares on this file" in both.stdout

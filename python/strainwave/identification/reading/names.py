@@ -108,9 +108,9 @@ _SIDE_OF: dict[str, Side] = {word: side for side, words in SIDES.items() for wor
 _WORDS = (*QUANTITY_OF, *_SIDE_OF, *COMMANDED, *NEUTRAL, *OTHERS, *ESTIMATED, *SHARES)
 _VOCABULARY = {word for word in _WORDS if len(word) > 2 and word not in ("par", "the")}
 PHRASES = {
-    r"(?<![a-z])no[\s_-]*load(?![a-z])": "idle",
-    r"(?<![a-z])break[\s_-]away": "breakaway",
-    r"(?<![a-z])back[\s_-]driv": "backdriv",
+    re.compile(r"(?<![a-z])no[\s_-]*load(?![a-z])", re.IGNORECASE): "idle",
+    re.compile(r"(?<![a-z])break[\s_-]away", re.IGNORECASE): "breakaway",
+    re.compile(r"(?<![a-z])back[\s_-]driv", re.IGNORECASE): "backdriv",
 }  # of two words
 _GREEK = str.maketrans({"ω": "omega", "τ": "tau", "θ": "theta", "φ": "phi"})
 _UNIT_NAMES = {"rpm": "rpm"}  # words for quantity and unit
@@ -245,7 +245,7 @@ def _one_word(name: str) -> str:
     'idle running torque'
     """
     for phrase, word in PHRASES.items():
-        name = re.sub(phrase, word, name, flags=re.IGNORECASE)
+        name = phrase.sub(word, name)
     return name
 
 

@@ -104,7 +104,7 @@ def test_springs_of_different_kinds_are_compared_by_their_stiffness_at_zero_twis
 def test_files_of_no_kind_are_refused() -> None:
     with pytest.raises(ValueError, match="at least one file"):
         sw.identify("hfuc-25-100", {})
-    with pytest.raises(ValueError, match=r"'speed' is no kind of measurement; the kinds are friction, effort, torsion"):
+    with pytest.raises(ValueError, match=r"'speed' is no kind of measurement; the kinds are friction, effort, starting, "):
         sw.identify("hfuc-25-100", {"speed": table(0.02, 3e-4)})
     with pytest.raises(TypeError, match="a measurement must be a path or a Recording, not 3"):
         sw.identify("hfuc-25-100", {"friction": 3})  # type: ignore[dict-item]
