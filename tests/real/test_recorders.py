@@ -62,7 +62,7 @@ ARM = {
 
 
 @needs_arms
-@pytest.mark.slow("real")
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize("name", ARM)
 def test_a_recording_of_an_arm(name: str) -> None:
     (file,) = files_of(ARMS / name).files
