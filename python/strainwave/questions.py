@@ -50,6 +50,16 @@ class Answer:
         return [*words, *self.files]
 
     @property
+    def stated(self) -> frozenset[tuple[str, str]]:
+        """What an answer states, by its argument and the name of its entry.
+
+        >>> sorted(Answer("at the motor", {"side": "input", "units": {"v": "rpm"}}).stated)
+        [('side', ''), ('units', 'v')]
+        """
+        entries = {(name, key) for name in TABLES for key in self.given.get(name, ())}
+        return frozenset(entries | {(name, "") for name in SINGLE if name in self.given})
+
+    @property
     def arguments(self) -> str:
         """The keyword arguments of `FileMapping`, as Python has them.
 

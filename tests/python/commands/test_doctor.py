@@ -127,7 +127,8 @@ def test_kernels_that_are_not_used_are_shown_with_the_reason(
 
 @pytest.mark.slow("commands")
 def test_it_imports_nothing_that_takes_long() -> None:
-    code = f"from strainwave.commands.doctor import doctor; doctor(); import sys; print({HEAVY} & sys.modules.keys())"
+    shown = "from strainwave.commands.doctor import doctor; doctor([], standalone_mode=False)"
+    code = f"{shown}; import sys; print({HEAVY} & sys.modules.keys())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "set()"
 

@@ -180,25 +180,34 @@ def _but_for_joint(answer: Answer) -> str:
     return str({**answer.given, "joint": None})
 
 
-def _ways_on(source: MeasurementFile, given: FileMapping, answer: Answer, question: QuestionError) -> list[Answer]:
+def _ways_on(
+    source: MeasurementFile,
+    given: FileMapping,
+    answer: Answer,
+    question: QuestionError,
+    answered: frozenset[tuple[str, str]] = frozenset(),
+) -> list[Answer]:
     """Return an answer with what a file is then; with each answer to the question that follows, if one does.
+
+    None if it is an answer to what was `answered` before: units of a time that no unit makes right lead in a circle.
 
     Raises:
         ValueError: the file cannot be read so
     """
     mapping = given.updated(FileMapping(**answer.given))
-    if answer.files or mapping == given:
+    if answer.files or mapping == given or not answer.stated.isdisjoint(answered):
         return [answer] if answer.files else []
     if mapping.joint == ALL_JOINTS:
         of_first = [Answer(answer.label, {**answer.given, "joint": joint}) for joint in joints_of(source, given)[:1]]
-        ways = [way for first in of_first for way in _ways_on(source, given, first, question)]
+        ways = [way for first in of_first for way in _ways_on(source, given, first, question, answered)]
         return [replace(each, given={**each.given, "joint": ALL_JOINTS}, gives="") for each in ways]
+    answered |= answer.stated
     try:
         return [replace(answer, gives=_in_words(_as_read(source, mapping)))]
     except QuestionError as following:
         if following.question == question.question:
             return []
-        ways = [way for each in following.answers for way in _ways_on(source, mapping, each, following)]
+        ways = [way for each in following.answers for way in _ways_on(source, mapping, each, following, answered)]
         return [way.after(answer) for way in ways]
 
 
