@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
+from itertools import chain, count
 from math import isfinite, isnan, nan
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -282,10 +283,12 @@ def _rows_of_sequence(name: str, items: Sequence[Any], unit: str) -> Iterator[Ro
 
 def named_apart(rows: Iterable[Row]) -> Iterator[tuple[str, Row]]:
     """Yield each row with its name, which is numbered if another row has it."""
-    counts: dict[str, int] = {}
+    used = set[str]()
     for row in rows:
-        counts[row.name] = counts.get(row.name, 0) + 1
-        yield (row.name if counts[row.name] == 1 else f"{row.name} ({counts[row.name]})"), row
+        names = chain([row.name], (f"{row.name} ({number})" for number in count(2)))
+        name = next(each for each in names if each not in used)
+        used.add(name)
+        yield name, row
 
 
 def _entry(row: Row) -> dict[str, Any]:
@@ -315,7 +318,9 @@ def number_text(row: Row) -> str:
         return " to ".join(typeset.number(float(end), DIGITS) for end in value)
     if value is None or isinstance(value, str):
         return value or "—"
-    return typeset.uncertain(value, row.sigma) if not isnan(row.sigma) else typeset.number(value, DIGITS)
+    if isnan(value):
+        return "—"
+    return typeset.uncertain(value, row.sigma) if row.sigma >= 0.0 else typeset.number(value, DIGITS)
 
 
 def in_one_line(rows: Iterable[Row]) -> str:

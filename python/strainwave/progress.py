@@ -1,14 +1,15 @@
 """Progress of long calls: one argument, which means the same everywhere.
 
-Every long call takes `progress`: None shows a bar on a terminal once the call has taken a second, True shows it at once,
-False shows nothing, and a function is called with what is worked on and with the share of the whole that is done.
+`sw.simulate` and its kin, `sw.identify`, `sw.predict`, `sw.compensate` and other long calls take `progress`: None shows a bar
+on a terminal once the call has taken a second, True shows it at once, False shows nothing, and a function is called with what
+is worked on and with the share of the whole that is done.
 
->>> told = []
->>> with by_count(lambda stage, share: told.append((stage, share)), "simulating", 4) as done:
+>>> shares = []
+>>> with by_count(lambda stage, share: shares.append((stage, share)), "simulating", 4) as done:
 ...     for step in range(5):
 ...         done(step)
->>> told[-2:]
-[('simulating', 0.75), ('simulating', 1.0)]
+>>> shares[-2:]  # the end is told in any case
+[('simulating', 1.0), ('simulating', 1.0)]
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from strainwave.messages import shortened
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
-Tell: TypeAlias = Callable[[str, float], None]  # called with a stage and the share done, in [0, 1], nan if not known
-Progress: TypeAlias = bool | Tell | None
+Report: TypeAlias = Callable[[str, float], None]  # called with a stage and the share done, in [0, 1], nan if not known
+Progress: TypeAlias = bool | Report | None
 SHOWN_AFTER = 1.0  # s, that a call takes before its bar appears
 _shown = Lock()  # of the one bar that a terminal has: calls within a call show none
 
@@ -34,27 +35,31 @@ _shown = Lock()  # of the one bar that a terminal has: calls within a call show 
 @contextmanager
 def by_count(progress: Progress, stage: str, total: int) -> Iterator[Callable[[int], None] | None]:
     """Yield a function to call with how many of `total` are done; None if nobody watches."""
-    with _told(progress) as tell:
-        yield None if tell is None else lambda done: tell(stage, done / max(total, 1))
+    with _watched(progress) as report:
+        if report is None:
+            yield None
+            return
+        yield lambda done: report(stage, done / max(total, 1))
+        report(stage, 1.0)
 
 
 @contextmanager
 def in_turn(progress: Progress, total: int | None = None) -> Iterator[Callable[[str], None]]:
     """Yield a function to call with the name of each of `total` parts as its turn comes; of None the count is not known."""
-    with _told(progress) as tell:
+    with _watched(progress) as report:
         begun = 0
 
         def turn(name: str) -> None:
             nonlocal begun
-            if tell is not None:
-                tell(name, min(begun / total, 1.0) if total else nan)
+            if report is not None:
+                report(name, min(begun / total, 1.0) if total else nan)
             begun += 1
 
         yield turn
 
 
 @contextmanager
-def _told(progress: Progress) -> Iterator[Tell | None]:
+def _watched(progress: Progress) -> Iterator[Report | None]:
     """
     Raises:
         TypeError: `progress` is neither None, True, False nor a function
@@ -64,15 +69,17 @@ def _told(progress: Progress) -> Iterator[Tell | None]:
         return
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress = {shortened(progress)} must be True, False, None, or a function of a stage and a share")
-    wanted = sys.stderr.isatty() if progress is None else progress
+    wanted = (sys.stderr is not None and sys.stderr.isatty()) if progress is None else progress
     if not wanted or current_thread() is not main_thread() or not _shown.acquire(blocking=False):
         yield None
         return
-    bar = _Bar(0.0 if progress else SHOWN_AFTER)
     try:
-        yield bar.tell
+        bar = _Bar(0.0 if progress else SHOWN_AFTER)
+        try:
+            yield bar.report
+        finally:
+            bar.close()
     finally:
-        bar.close()
         _shown.release()
 
 
@@ -91,7 +98,7 @@ class _Bar:
         else:
             self._open()
 
-    def tell(self, stage: str, share: float) -> None:
+    def report(self, stage: str, share: float) -> None:
         self._last = stage, share
         if self._bar is not None:
             self._update()
@@ -113,7 +120,8 @@ class _Bar:
         with self._lock:
             if self._closed:
                 return
-            bar = Progress(*columns, console=Console(stderr=True), transient=True)
+            # What the call prints meanwhile goes where it goes without a bar.
+            bar = Progress(*columns, console=Console(stderr=True), transient=True, redirect_stdout=False, redirect_stderr=False)
             bar.add_task("", total=None)
             bar.start()
             self._bar = bar

@@ -85,7 +85,7 @@ class Answer:
     def _written(self, name: str, value: object) -> str:
         """Return a value of an option, with the word in place of a number that only a person knows."""
         text = f"{value:g}" if isinstance(value, float) else str(value)
-        return re.sub(r"\d+(\.\d+)?", NUMBER, text, count=1) if name in self.numbers else text
+        return re.sub(r"\d+(\.\d+)?(e[+-]?\d+)?", NUMBER, text, count=1) if name in self.numbers else text
 
     def _entry(self, name: str, value: object) -> str:
         text = self._written(name, value)

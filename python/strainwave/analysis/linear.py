@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+MIN_GROWTH_SHARE = 1e-9  # of a pole that grows: its real part over its size; below it is 0 but for rounding
 MIN_RELATIVE_POLE = 1e-6  # over the largest; a smaller one is 0 but for rounding
 DRAWN_FREQUENCIES = 600  # of a Bode diagram
 HOLDING_TORQUE = 1e30  # N.m: more than any torque that turns an input
@@ -188,9 +189,10 @@ class Linearisation(ComparedByFields, Pictured):
         return answer
 
     def _headline(self) -> str:
-        unstable = int((self.poles.real > 0.0).sum())
+        unstable = int((self.poles.real > MIN_GROWTH_SHARE * np.abs(self.poles)).sum())
         verdict = counted(unstable, "unstable pole") if unstable else "stable"
-        return f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs, {verdict}"
+        kinds = (("state", self.states), ("input", self.inputs), ("output", self.outputs))
+        return f"{', '.join(counted(len(names), kind) for kind, names in kinds)}, {verdict}"
 
     def _rows(self) -> Iterator[Row]:
         seen = [

@@ -155,9 +155,13 @@ def _answer(question: QuestionError) -> list[str]:
         chosen = input(f"answer, 1 to {len(question.answers)}, or Enter to end: ").strip()
         if chosen not in map(str, range(1, len(question.answers) + 1)):
             return []
-        words = question.answers[int(chosen) - 1].options
-        return [word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if NUMBER in word else word for word in words]
-    except (EOFError, KeyboardInterrupt):
+        answer = question.answers[int(chosen) - 1]
+        of_person = {f"{name}=" for name in answer.numbers}
+        return [
+            word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if word.startswith((*of_person,)) else word
+            for word in answer.options
+        ]
+    except EOFError:
         return []
 
 

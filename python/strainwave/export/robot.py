@@ -17,6 +17,7 @@ import numpy as np
 from strainwave import Drive, Gear
 from strainwave.export.coupled import MAX_STABLE_SHARE
 from strainwave.files.budget import read_text
+from strainwave.files.folder import inside
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, quoted
 
@@ -345,8 +346,13 @@ def _read(path: Path) -> Element:
 
 
 def _whole(root: Element, path: Path | None) -> Element:
-    """Return a model with the files that it includes, and with the bodies that MuJoCo makes of `GENERATING` elements."""
-    for _ in range(MAX_INCLUDED_FILES):
+    """Return a model with the files that it includes, and with the bodies that MuJoCo makes of `GENERATING` elements.
+
+    Raises:
+        ValueError: a file is included twice or lies outside of the folder, or all are too many, too large or too deep
+    """
+    files, room = set[Path](), MAX_MODEL_BYTES
+    while True:
         parents = {each: parent for parent in root.iter() for each in parent}
         included = next(root.iter("include"), None)
         if included is None:
@@ -355,9 +361,14 @@ def _whole(root: Element, path: Path | None) -> Element:
             raise ValueError("the model includes other files; give its path, not its text")
         parent = parents[included]
         place = list(parent).index(included)
-        parent[place : place + 1] = list(_xml(read_text(path.parent / included.attrib.get("file", ""), MAX_MODEL_BYTES)))
-    else:
-        raise ValueError(f"the model includes more than {MAX_INCLUDED_FILES} files")
+        file = inside(path.parent, included.attrib.get("file", ""))
+        if file in files or len(files) == MAX_INCLUDED_FILES:
+            raise ValueError(f"the model includes {quoted(file.name)} twice, or more than {MAX_INCLUDED_FILES} files")
+        files.add(file)
+        text = read_text(file, room)
+        room -= len(text)
+        parent[place : place + 1] = list(_xml(text))
+    _check_depth(root)
     if not any(each.tag in GENERATING for each in root.iter()):
         return root
     try:
@@ -373,21 +384,26 @@ def _whole(root: Element, path: Path | None) -> Element:
 
 
 def _parsed(model: str) -> Element:
-    """Return the root of an MJCF file; one that declares entities is refused, as these may grow without bound."""
-    if len(model) > MAX_MODEL_BYTES or "<!DOCTYPE" in model or "<!ENTITY" in model:
-        raise ValueError("the model declares entities, or is larger than 64 MiB; save it without a DOCTYPE")
+    """Return the root of an MJCF file."""
     root = _xml(model)
     if root.tag != "mujoco":
         raise ValueError(f"the model is a {root.tag}, not a mujoco; MuJoCo itself saves a URDF as MJCF (mj_saveLastXML)")
+    _check_depth(root)
+    return root
+
+
+def _check_depth(root: Element) -> None:
     depths = {root: 1}
     for parent in root.iter():
         depths.update(dict.fromkeys(parent, depths[parent] + 1))
     if (deepest := max(depths.values())) > MAX_NESTED_ELEMENTS:
         raise ValueError(f"the model nests {deepest} elements in each other; a robot may have {MAX_NESTED_ELEMENTS} at most")
-    return root
 
 
 def _xml(model: str) -> Element:
+    """Return the root of a text; one that declares entities is refused, as these may grow without bound."""
+    if len(model) > MAX_MODEL_BYTES or "<!DOCTYPE" in model or "<!ENTITY" in model:
+        raise ValueError("the model declares entities, or is larger than 64 MiB; save it without a DOCTYPE")
     try:
         return ElementTree.fromstring(model)
     except ElementTree.ParseError as error:

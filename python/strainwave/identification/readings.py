@@ -147,11 +147,11 @@ def answered(question: QuestionError, source: MeasurementFile, known: GearSoFar,
             readings.append(_Reading(answer))
             continue
         file = recognise(source, given.updated(FileMapping(**answer.given)))
-        known = with_ratio(known, file)
-        of_motion = _of_motion(file, source, known)[0] if file.kind == "log" and file.alternatives else []
+        known_of_file = with_ratio(known, file)
+        of_motion = _of_motion(file, source, known_of_file)[0] if file.kind == "log" and file.alternatives else []
         readings += [replace(each, answer=each.answer.after(answer)) for each in of_motion]
         if not of_motion:
-            readings.append((_tried(file, answer, known) if file.kind == "log" else None) or _Reading(answer, file))
+            readings.append((_tried(file, answer, known_of_file) if file.kind == "log" else None) or _Reading(answer, file))
         if readings[-1].error >= MAX_UNEXPLAINED:
             readings[-1] = replace(readings[-1], contradiction=f"{_percent(readings[-1])} is unexplained")
     return _most_probable(readings, question.question, source, known, given)

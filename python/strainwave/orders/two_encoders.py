@@ -136,10 +136,11 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
     def _headline(self) -> str:
         orders = counted(sum(each.significant for each in self.orders), "significant order")
         noise = typeset.quantity(self.noise, "rad")
-        return f"ratio {self.ratio.value:.6g}, {orders} over {self.revolutions:.3g} revolutions, noise {noise}"
+        return f"ratio {self.ratio.used:.6g}, {orders} over {self.revolutions:.3g} revolutions, noise {noise}"
 
     def _rows(self) -> Iterator[Row]:
-        yield Row("ratio", self.ratio.value, "1", self.ratio.sigma)
+        yield Row("ratio", self.ratio.used, "1", note="used")
+        yield Row("ratio of the angles", self.ratio.value, "1", self.ratio.sigma)
         for each in sorted(self.orders, key=lambda order: -order.amplitude):
             significant = "significant" if each.significant else "not significant"
             note = f"phase {typeset.number(float(np.degrees(each.phase)), 3)}°, {significant}"

