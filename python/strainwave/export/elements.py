@@ -258,8 +258,8 @@ def remark_on_rotor(gear_set: GearSet, factor: str = "") -> Iterator[str]:
     elif not getattr(gear_set.motor, "inertia", 0.0):
         yield (
             "motor.inertia is 0 in the file: armature is the inertia of the wave generator alone. If `identify` found the "
-            "inertia of the load, it contains that of the rotor: do not add it again, or identify once more with "
-            "--constant motor_inertia=NUMBER, which parts them"
+            "inertia of the load, it contains that of the rotor: do not add it again to that load; bodies of a robot lack "
+            "it. `identify` with --constant motor_inertia=NUMBER parts them"
         )
 
 
