@@ -26,6 +26,10 @@ def test_the_commands_of_each_gear_run_and_name_its_files(name: str, tmp_path, m
     assert len(commands) == 3
     for words in commands:
         assert str(folder / "gear.toml") in words
+        assert "out/" not in shlex.join(words).replace(f"{folder}/", "")
+        if words[1] in ("export", "predict"):
+            assert words[-2] == "--out"
+            assert Path(words[-1]).parent == folder
         done = CliRunner().invoke(app, words[1:])
         assert done.exit_code == 0, done.output
     if name == "robot-joint":

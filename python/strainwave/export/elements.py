@@ -190,7 +190,8 @@ class GearElements:
         full, own = (
             _to_and_fro(each, self.input_inertia - gear.input_inertia, speed, inertia) for each in (gear, self.simplified(gear))
         )
-        over = f"{RUN_DURATION:g} s at {RUN_FREQUENCY:g} Hz, the input to {speed:.4g} rad/s before {inertia:.3g} kg.m2"
+        motion = f"{RUN_DURATION:g} s at {RUN_FREQUENCY:g} Hz, the input to {speed:.4g} rad/s"
+        over = f"{motion} before {inertia:.3g} kg.m2 at the output, a load of this comparison only"
         twist = float(np.ptp(full["transmission_error"]))
         yield ExportLoss.between("transmission error of a run", own["output_angle"] - full["output_angle"], "rad", twist, over)
         torque = float(np.sqrt(np.mean(full["motor_torque"] ** 2)))
@@ -241,6 +242,25 @@ def friction_losses(gear: Gear, max_speed: float, exported: Callable[[Array], Ar
     if size > 0.0:
         over = f"{forward[0]:.3g} to {forward[-1]:.4g} rad/s of the input in both senses, over a turn of the output"
         yield ExportLoss.between("friction at the input", exported(speed)[:, None] - full, "N.m", size, over)
+
+
+def remark_on_rotor(gear_set: GearSet, factor: str = "") -> Iterator[str]:
+    """Yield a remark if the inertia of the motor is not part of the armature.
+
+    Args:
+        gear_set: the gear with its motor
+        factor: that the armature has the inertia of the rotor with, in words
+    """
+    if gear_set.motor is None:
+        yield (
+            "the file contains no motor: armature is the inertia of the wave generator alone. Add that of the rotor" + factor
+        )
+    elif not getattr(gear_set.motor, "inertia", 0.0):
+        yield (
+            "motor.inertia is 0 in the file: armature is the inertia of the wave generator alone. If `identify` found the "
+            "inertia of the load, it contains that of the rotor: do not add it again to that load; bodies of a robot lack "
+            "it. `identify` with --constant motor_inertia=NUMBER parts them"
+        )
 
 
 def twist_at_largest(elements: GearElements) -> float:

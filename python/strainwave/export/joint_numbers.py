@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear
-from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, twist_at_largest
+from strainwave.export.elements import GearElements, ShaftFriction, friction_losses, remark_on_rotor, twist_at_largest
 from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.mujoco import friction_attributes
 from strainwave.export.robot import DEFAULT_TIMESTEP
@@ -75,23 +75,9 @@ def joint(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | Non
             "solreffriction it creeps at a torque below its friction",
             "do not copy the stiffness into <joint>: MuJoCo would tie the link to the world. For torsion use `strainwave "
             "export mjcf`",
-            *remark_on_rotor(gear_set),
+            *remark_on_rotor(gear_set, ", times the ratio squared"),
         ),
     )
-
-
-def remark_on_rotor(gear_set: GearSet) -> Iterator[str]:
-    """Yield a remark if the inertia of the motor is not part of the armature."""
-    if gear_set.motor is None:
-        yield (
-            "the file contains no motor: armature is the inertia of the wave generator alone. Add that of the rotor, times the "
-            "ratio squared"
-        )
-    elif not getattr(gear_set.motor, "inertia", 0.0):
-        yield (
-            "motor.inertia is 0 in the file: armature is the inertia of the wave generator alone. If `identify` found the "
-            "inertia of the load, it contains that of the rotor: do not add it again"
-        )
 
 
 def left_out_if_rigid(elements: GearElements) -> Iterator[str]:

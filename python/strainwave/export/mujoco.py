@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from strainwave import Drive, Gear, arguments, loads, motor
-from strainwave.export.elements import GearElements, ShaftFriction, Spring
+from strainwave.export.elements import GearElements, ShaftFriction, Spring, remark_on_rotor
 from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.robot import Element, Robot, Twist, child, gears_of_joints, kept, written
 from strainwave.files.gear_set import GearSet, gear_set_of
@@ -140,8 +140,9 @@ def _of_all(exports: Mapping[str, Part]) -> tuple[tuple[ExportLoss, ...], tuple[
         found = known.setdefault(id(gear_set), ()) or elements.losses(gear_set.gear)
         known[id(gear_set)] = found
         losses += [replace(each, quantity=prefix + each.quantity) for each in found]
-        left_out += [prefix + each for each in (*elements.left_out, *_left_out_of_motor(gear_set.motor))]
-        remarks += [prefix + each for each in own_remarks]
+        lost = (*_left_out_of_motor(gear_set.motor), *_left_out_of_load(gear_set.load, alone=not joint))
+        left_out += [prefix + each for each in (*elements.left_out, *lost)]
+        remarks += [prefix + each for each in (*own_remarks, *remark_on_rotor(gear_set))]
     return tuple(losses), tuple(left_out), tuple(remarks)
 
 
@@ -154,6 +155,17 @@ def _left_out_of_motor(part: Any) -> Iterator[str]:
             yield "rise of the resistance with temperature"
     elif part is not None and not isinstance(part, motor.CurrentSource | motor.TorqueSource):
         yield f"the motor {part.name}: the actuator is a torque at the input"
+
+
+def _left_out_of_load(part: Any, *, alone: bool) -> Iterator[str]:
+    """Yield the numbers of a load that the model does not have; alone, it has the inertia."""
+    fields = () if part is None else part.fields
+    values = {field["name"]: (getattr(part, field["name"]), field["unit"]) for field in fields if field["kind"] == "number"}
+    carried = {"inertia"} if alone else set()
+    lost = [f"{name} {value:.5g} {unit}" for name, (value, unit) in values.items() if value and name not in carried]
+    if lost:
+        where = "build it of bodies" if alone else "the bodies of the robot take its place"
+        yield f"load: {listed(lost)}; {where}"
 
 
 def _inertia(gear_set: GearSet, given: float | None) -> float:

@@ -6,9 +6,9 @@ from importlib import resources
 from pathlib import Path
 
 from strainwave import Drive, Gear
-from strainwave.export.elements import GearElements
+from strainwave.export.elements import GearElements, remark_on_rotor
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.joint_numbers import joint, remark_on_rotor
+from strainwave.export.joint_numbers import joint
 from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet, gear_set_of
 
@@ -64,7 +64,7 @@ def ros2(drive: GearSet | Drive | Gear | str | Path, *, max_torque: float | None
             "max_velocity is that of the average input speed of the ratings; without one it is assumed",
             "drive_node.py needs rclpy, sensor_msgs and std_msgs: of ROS 2, or pip install ros-rclpy ros-rmw-fastrtps-cpp "
             "ros-sensor-msgs ros-std-msgs",
-            *remark_on_rotor(gear_set),
+            *remark_on_rotor(gear_set, ", times the ratio squared"),
         ),
     )
 

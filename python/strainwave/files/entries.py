@@ -11,6 +11,7 @@ from strainwave.files.units import check as check_unit, convert
 from strainwave.messages import shortened
 
 NOT_GIVEN = "not given"
+OPPOSITE = "of the log = -"  # in the source of a motor whose effort a log counts in the other sense
 
 
 @dataclass(frozen=True)

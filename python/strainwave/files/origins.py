@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from strainwave.files.described import parameters, parts
-from strainwave.files.entries import NOT_GIVEN, Entry
+from strainwave.files.entries import NOT_GIVEN, OPPOSITE, Entry
 
 IDENTIFIED = "identified"  # begins the source of a number that a measurement determines, alone or in combination
 HEADINGS = {
@@ -37,7 +37,8 @@ def origin_lines(models: Mapping[str, Any], sources: Mapping[str, Entry]) -> lis
             identified, sigma = entry.source.startswith(IDENTIFIED), entry.sigma(value)
             within = "" if sigma is None else f" ± {sigma:.2g}"
             line = f"  {path} = {value:.6g}{within} {unit.removesuffix('1')}".rstrip()
-            groups[identified].append(f"{line}, {entry.source}" if identified else line)
+            is_said = identified or OPPOSITE in entry.source
+            groups[identified].append(f"{line}, {entry.source}" if is_said else line)
     return [line for each, lines in groups.items() for line in (HEADINGS[each], *lines) if lines] if groups[True] else []
 
 

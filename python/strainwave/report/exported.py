@@ -56,7 +56,7 @@ def loss_words(loss: ExportLoss) -> str:
     ripple: 1 % of the friction (1 mN·m, at most 3 mN·m), over a turn of the input
     """
     if loss.rms == 0.0 or loss.rms_share < MIN_STATED_SHARE:
-        return f"{loss.quantity}: none, over {loss.over}"
+        return f"{loss.quantity}: nothing lost, over {loss.over}"
     amount = typeset.quantity(loss.rms, loss.unit)
     if loss.largest > loss.rms:
         amount += f", at most {typeset.quantity(loss.largest, loss.unit)}"

@@ -79,11 +79,12 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
     compared = next((each for each in found.files if _is_predicted(each, found)), None)
     if compared is not None and compared.recognised is not None:
         options = options_of(compared.recognised.mapping)
-        words = ["predict", str(gear), str(compared.recognised.path), *options]
+        words = ["predict", str(gear), str(compared.recognised.path), *options, "--out", str(folder / "predict")]
         steps.insert(0, ("Compare a later recording: its name in place of this one", words))
     torque = [] if "peak_torque" in found.gear_set.ratings else ["--max-torque", LARGEST_TORQUE]
     largest = f" (largest torque in place of {LARGEST_TORQUE} N·m)" if torque else ""
-    steps.append((f"Write the joint for MuJoCo and URDF{largest}", ["export", "joint", str(gear), *torque]))
+    words = ["export", "joint", str(gear), *torque, "--out", str(folder / "joint")]
+    steps.append((f"Write the joint for MuJoCo and URDF{largest}", words))
     if compared is None:
         steps.append(
             ("Compare it with a gear of the catalogue (strainwave list gears lists them)", ["compare", USUAL_GEAR, str(gear)])

@@ -155,3 +155,24 @@ def test_what_a_motor_has_no_element_for_is_named():
     part = sw.motor.BrushlessDC(resistance=0.5, torque_constant=0.1, inertia=5e-5)
     found = mjcf(GearSet.read("csg-20-100").with_parts(motor=part, source="test"), load_inertia=INERTIA)
     assert "the motor brushless_dc: the actuator is a torque at the input" in found.left_out
+
+
+def test_numbers_of_the_load_and_a_missing_rotor_are_named():
+    pendulum = sw.loads.Pendulum(inertia=INERTIA, gravity_torque=10.973)
+    whole = GearSet.read("csg-20-100").with_parts(motor=sw.motor.CurrentSource(inertia=0.0), load=pendulum, source="test")
+    alone, in_robot = mjcf(whole), mjcf(whole, into=ROBOT, joint="elbow")
+    assert "load: gravity_torque 10.973 N.m; build it of bodies" in alone.left_out
+    assert "load: inertia 1.2 kg.m2, gravity_torque 10.973 N.m; the bodies of the robot take its place" in in_robot.left_out
+    for found in (alone, in_robot):
+        (rotor,) = (each for each in found.remarks if each.startswith("motor.inertia is 0 in the file"))
+        assert "--constant motor_inertia=NUMBER" in rotor
+    with_rotor = mjcf(whole.with_parts(motor=CURRENT, load=sw.loads.Inertia(inertia=INERTIA), source="test"))
+    assert not any(each.startswith("load: ") for each in with_rotor.left_out)
+    assert not any("armature" in each for each in with_rotor.remarks)
+
+
+def test_the_load_of_the_run_that_is_compared_is_said_to_be_that_of_the_comparison_alone():
+    losses = mjcf(GearSet.read("csg-20-100"), load_inertia=INERTIA).losses
+    of_run = [each.over for each in losses if each.quantity.endswith(" of a run")]
+    assert len(of_run) == 2
+    assert all(each.endswith(" kg.m2 at the output, a load of this comparison only") for each in of_run)

@@ -56,6 +56,15 @@ def test_an_fmu_states_in_its_documentation_what_was_identified() -> None:
     assert "gear.input_inertia = " in page
 
 
+def test_every_export_states_that_a_log_counts_its_current_the_other_way() -> None:
+    why = "assumed; in a.csv current is counted against the motion, so, current of the log = -current of the model"
+    turned = IDENTIFIED.replace(sources={**IDENTIFIED.sources, "motor.inertia": sw.files.Entry(why)})
+    for found, file in ((sw.export.joint(turned), "joint.xml"), (sw.export.mjcf(turned), "gear.xml")):
+        assert f"motor.inertia: {why}" in found.remarks
+        assert why in str(found.files[file])
+    assert not any("of the log" in each for each in sw.export.joint(IDENTIFIED).remarks)
+
+
 @pytest.mark.slow("export")
 def test_compiled_exports_state_what_was_identified() -> None:
     plugin = sw.export.mujoco_plugin(IDENTIFIED).files

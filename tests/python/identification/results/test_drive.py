@@ -53,7 +53,9 @@ def test_it_contains_load_and_motor_with_their_sources(found: GearSet) -> None:
     assert found.sources["load.inertia"].uncertainty == pytest.approx(0.0, abs=0.1)
     assert found.motor.torque_constant == 0.12
     assert found.motor.inertia == 4e-5
-    assert found.sources["motor.torque_constant"].source == "given with joint.csv"
+    of_constant = found.sources["motor.torque_constant"].source
+    assert of_constant.startswith("given with joint.csv; in joint.csv current is counted in the sense of the output, ")
+    assert of_constant.endswith(", current of the log = -current of the model")
     assert isinstance(found.drive, sw.Drive)
 
 
