@@ -43,7 +43,12 @@ def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) 
     assert gear.hysteresis.breakaway[0] == told["gear.hysteresis.breakaway[0]"].value
     assert gear.damping == told["gear.damping"].value
     assert found.gear_set.sources["gear.damping"].source == "identified from log.csv"
-    assert [each.title for each in found.files[0].pictures] == ["", "twist over torque", "between the shafts", "error over a turn of the input"]
+    assert [each.title for each in found.files[0].pictures] == [
+        "",
+        "twist over torque",
+        "between the shafts",
+        "error over a turn of the input",
+    ]
     assert "log.csv, between the shafts" in identify_report(found)
 
 
