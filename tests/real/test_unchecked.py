@@ -15,6 +15,7 @@ from strainwave.report.identify_files import identify_summary
 SHARED = Path(__file__).parents[3] / "shared"
 TRIALS = Path(os.environ.get("STRAINWAVE_TRIALS", SHARED / "trials")) / "turn4"
 KUKA = Path(os.environ.get("STRAINWAVE_DATA", SHARED / "data")) / "arms" / "kuka-kr300" / "FF_A.mat"
+SCALE = "viscous friction, inertia and gravity scale with it"
 TORQUE = {"input_torque": "rec.act_torque_abs_nm"}
 
 pytestmark = pytest.mark.skipif(not TRIALS.is_dir(), reason=f"trials not found: {TRIALS} (set STRAINWAVE_TRIALS)")
@@ -49,7 +50,7 @@ def test_a_motor_angle_divided_by_an_assumed_ratio_has_no_orders() -> None:
     assumed = identify("csg-20-100", [KUKA], mapping=FileMapping(joint="1", columns=TORQUE))
     assert not any("kinematic_error" in each.path for each in assumed.files[0].estimates)
     assert assumed.gear_set.gear.kinematic_error == assumed.start_set.gear.kinematic_error
-    assert assumed.unchecked == {"ratio": "100, of the start set"}
+    assert assumed.unchecked == {"ratio": f"100, of the start set ({SCALE})"}
     lines = terminal(assumed)
     assert "the kinematic error is not determined: rec.act_pos_mot_deg_1 was already divided by the ratio" in lines
     assert "columns not used" not in lines
@@ -65,7 +66,7 @@ def test_a_motor_angle_divided_by_a_given_ratio_has_orders() -> None:
     mapping = FileMapping(joint="1", columns=TORQUE, constants={"ratio": 256.857})
     given = identify("csg-20-100", [KUKA], mapping=mapping)
     assert any("kinematic_error" in each.path for each in given.files[0].estimates)
-    assert given.unchecked == {"ratio": "256.857"}
+    assert given.unchecked == {"ratio": f"256.857 ({SCALE})"}
 
 
 @pytest.mark.slow("identification")

@@ -235,6 +235,9 @@ def _unchecked(taken: PreparedLog, file: Recognised, estimates: Sequence[FileEst
         dry = next((each.value for each in estimates if each.path == COULOMB and not each.why), None)
         at_output = "" if dry is None else f"; Coulomb friction at the output is {dry * ratio:.4g} N·m with any ratio"
         values["ratio"] += f" (friction at the input scales with it{at_output})"
+    elif effort == "input_torque":
+        of_speed = "" if "input_angle" in file.columns else "viscous friction, "
+        values["ratio"] += f" ({of_speed}inertia and gravity scale with it)"
     checks = checks - {RATIO_OF_ENCODERS} if "reflected_angle" in file.columns else checks
     return {name: value for name, value in values.items() if not checks & CHECKS_OF[name]}
 
