@@ -34,7 +34,7 @@ from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
 from strainwave.identification.results.drive import drive_set, name_of_files
-from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, compared_path
 from strainwave.identification.results.motor_inertia import without_motor
 from strainwave.identification.results.parameter_state import ParameterState, states_of
@@ -88,9 +88,14 @@ class Identified(ComparedByFields, Pictured, Reported):
 
     @property
     def unchecked(self) -> dict[str, str]:
-        """Ratio or torque constant with which estimates of logs scale, if no log checks it: their values, by name."""
-        logs = [each.unchecked for each in self.files if each.recognised and each.recognised.kind == "log" and each.estimates]
-        return {name: value for name, value in logs[0].items() if all(name in each for each in logs)} if logs else {}
+        """Numbers with which estimates scale, or that a file repeats, if no file of the kind checks them: values, by name."""
+        kinds: dict[str, list[Mapping[str, str]]] = {}
+        for each in self.files:
+            if each.recognised and each.estimates:
+                kinds.setdefault(each.recognised.kind, []).append(each.unchecked)
+        return {
+            name: value for files in kinds.values() for name, value in files[0].items() if all(name in each for each in files)
+        }
 
     @property
     def accepted(self) -> GearSet:
@@ -191,9 +196,7 @@ def identify(
     results = (*_named_apart(own, list(read), fits.copies), *fits.together)
     results = without_motor(results, accept=accept)
     loads = other_loads(results)
-    results = tuple(
-        replace(each, remarks=(loads[each.name], *each.remarks)) if each.name in loads else each for each in results
-    )
+    results = tuple(replace(each, remarks=_in_order(each, loads.get(each.name, ""))) for each in results)
     determined_by = {compared_path(path, fits.known.gear_set.gear): file for path, file in fits.known.determined_by.items()}
     parameters = combine(results, accept=accept, determined_by=determined_by)
     if not any(each.estimates or each.failed for each in results):
@@ -251,7 +254,8 @@ def check_arguments(files: object, mapping: object) -> None:
 def _nothing_determined(results: Sequence[FileResult]) -> list[Check]:
     """Return the check that files determine a parameter, if none does and no check of a file gives the reason."""
     estimates = [estimate for each in results for estimate in each.estimates]
-    if any(estimate.state != "not identified" for estimate in estimates) or any(each.failed for each in results):
+    stated = any(each.state != "not identified" or each.why == ASSUMED_BY_RECORDER for each in estimates)
+    if stated or any(each.failed for each in results):
         return []
     return [
         Check(
@@ -359,6 +363,12 @@ def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: M
         replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
         for each, name, path in zip(results, names, paths, strict=True)
     )
+
+
+def _in_order(result: FileResult, of_load: str) -> tuple[str, ...]:
+    """Return the remarks of a file, that of its load first; lists of what it contains and nothing uses come last."""
+    left_out = () if result.recognised is None else result.recognised.left_out
+    return tuple(sorted(filter(None, (of_load, *result.remarks)), key=left_out.__contains__))
 
 
 # ---- Files -----------------------------------------------------------------------------------------------------------

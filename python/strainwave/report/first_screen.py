@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +76,8 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
     """
     gear = folder / "gear.toml"
     steps = [("See every number, and where it comes from", ["show", str(gear)])]
+    if is_start_set(found):
+        return _in_words(steps)
     compared = next((each for each in found.files if _is_predicted(each, found)), None)
     if compared is not None and compared.recognised is not None:
         options = options_of(compared.recognised.mapping)
@@ -89,11 +91,23 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
         steps.append(
             ("Compare it with a gear of the catalogue (strainwave list gears lists them)", ["compare", USUAL_GEAR, str(gear)])
         )
+    return _in_words(steps)
+
+
+def _in_words(steps: Sequence[tuple[str, Sequence[str]]]) -> list[tuple[str, str]]:
     return [(what, shlex.join(["strainwave", *words])) for what, words in steps]
+
+
+def is_start_set(found: Identified) -> bool:
+    """True if the files changed nothing of the drive of the start set."""
+    result, start = found.gear_set, found.start_set
+    return (result.gear, result.motor, result.load) == (start.gear, start.motor, start.load)
 
 
 def next_lines(found: Identified, folder: Path) -> Iterator[str]:
     """Yield what to do next, each with its command, in lines for a terminal."""
+    if is_start_set(found):
+        yield f"gear.toml: the start set {found.start_set.name} unchanged"
     for what, command in next_commands(found, folder):
         yield from (f"{what}:", f"  {command}")
 

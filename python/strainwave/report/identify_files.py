@@ -17,7 +17,7 @@ from strainwave.identification.checks.comparisons import AGREEMENT
 from strainwave.identification.identify import Identified
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult
 from strainwave.messages import listed, with_options
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
@@ -184,7 +184,8 @@ def _not_identified(found: Identified) -> Iterator[str]:
     for file in found.files:
         reasons: dict[str, list[str]] = {}
         for each in file.estimates:
-            if each.state == "not identified" and each.path.startswith("gear.") and each.path not in determined:
+            shown = each.path.startswith("gear.") or each.why == ASSUMED_BY_RECORDER
+            if each.state == "not identified" and shown and each.path not in determined:
                 sigma = f" ± {each.sigma:.2g}" if isfinite(each.sigma) else ""
                 reasons.setdefault(each.why, []).append(f"{each.label} {each.value:.3g}{sigma} {each.unit}")
         yield from (f"  not identified: {', '.join(numbers)}, {file.name}: {why}" for why, numbers in reasons.items())

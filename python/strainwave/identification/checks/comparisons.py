@@ -20,9 +20,11 @@ from strainwave.identification.results.combined_parameter import (
     distance,
     is_friction,
 )
+from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
+from strainwave.typeset import percent
 
 AGREEMENT = "agreement of files"  # name of the check of two files
 SCALE = "torques of two files"  # likewise, of all their torques together
@@ -164,8 +166,8 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
         more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
         yield Check(
             AGREEMENT, f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
-            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}; this is "
-            f"{found[0].apart:.2g} times what runs of one gear and chance differ by, up to {MAX_DISTANCE:g} are allowed",
+            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}"
+            f"{_taken(found[0], parameters, one, other)}",
             "see whether both files are of one joint, and whether sides, columns, units and the ratio are right for both; "
             "compare temperature, load, speed and lubricant; leave out a file of another gear",
         )  # fmt: skip
@@ -265,18 +267,41 @@ def repeatability(path: str) -> float:
 
 
 class _Contradiction(NamedTuple):
-    """A parameter of which two files differ, in words, and how far apart they are beyond what runs of one gear differ by."""
+    """A parameter of which two files differ.
+
+    Attributes:
+        words: both estimates, and how far apart they are and may be
+        apart: the same in standard deviations, with what runs of one gear differ by
+        path: of the parameter
+        first_is_surer: True if the estimate of the first file has the smaller standard deviation
+    """
 
     words: str
     apart: float
+    path: str
+    first_is_surer: bool
+
+
+def _taken(found: _Contradiction, parameters: Sequence[CombinedParameter], one: str, other: str) -> str:
+    """Return which of two files a parameter is taken from, and why; empty if it is from neither."""
+    path = COULOMB if found.path == STEADY else found.path
+    source = next((each.source for each in parameters if each.estimate.path == path and each.source in (one, other)), "")
+    if not source:
+        return ""
+    is_surer = found.first_is_surer == (source == one)
+    why = "its standard deviation is the smaller" if is_surer else "the gear has its law, as it was fitted first"
+    return f"; {source} is taken because {why}"
 
 
 def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     best = min(one, other, key=lambda each: each.sigma)
     spread = repeatability(best.path) * abs(best.value)
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
+    off, usual, size = abs(difference(one, other)), max(float(np.hypot(spread, sigma)), 1e-300), abs(best.value)
+    as_share = size > 0.0 and not best.is_phase
+    differ, may = (percent(each / size) if as_share else f"{each:.2g} {best.unit}" for each in (off, MAX_DISTANCE * usual))
     words = (
-        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}, "
-        f"{distance(one, other):.3g} standard deviations apart"
+        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}: they "
+        f"differ by {differ}; runs of one gear differ by up to {may}"
     )
-    return _Contradiction(words, abs(difference(one, other)) / max(float(np.hypot(spread, sigma)), 1e-300))
+    return _Contradiction(words, off / usual, best.path, one.sigma <= other.sigma)

@@ -52,7 +52,7 @@ from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
 from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
 from strainwave.messages import listed
-from strainwave.orders.two_encoders import transmission_error
+from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 
@@ -99,7 +99,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks = list(held_out_error(held_out, file.path.name, file.neighbours))
     between = FileResult(file.path.name)
     if set(ENCODERS) <= set(recording.names):
-        errors = transmission_error(recording, ratio=file.constants.get("ratio"), ratio_option="--constant ratio=NUMBER")
+        errors = _errors(file, recording, abs(start.kinematics.ratio))
         between, known = between_encoders(taken, judged, errors, known, file.path.name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
@@ -129,8 +129,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_torque_constant(taken, name),
     ]
     checks += checks_of_motion(best, drive, recording, held_out, file)
-    unchecked = _unchecked(taken, {check.name for check in checks})
-    of_model += _scales(unchecked)
+    unchecked = _unchecked(taken, file, estimates, {check.name for check in checks})
+    of_model += _scales(unchecked, log.effort)
     shaped = _shape(predicted, log, held_out, ratio, name)
     checks += shaped.checks
     every = (
@@ -202,19 +202,51 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
             yield f"{best.log.effort} comes {1e3 * abs(nuisance.value):.3g} ± {1e3 * nuisance.sigma:.2g} ms {way} the motion"
 
 
-def _unchecked(taken: PreparedLog, checks: Set[str]) -> dict[str, str]:
-    """Return ratio and torque constant of a log of current, with their values, if no check of the log is one of them."""
-    if taken.in_current or taken.log.effort != "current":
+def _errors(file: Recognised, recording: Recording, ratio: float) -> TransmissionError:
+    """Return the transmission error; without orders of the input if the ratio of its motor angle was only assumed."""
+    column, given = file.columns.get("reflected_angle"), file.constants.get("ratio")
+    assumed = column is not None and given is None
+    option = "--constant ratio=NUMBER"
+    errors = transmission_error(recording, ratio=ratio if assumed else given, ratio_option=option)
+    if not assumed:
+        return errors
+    why = (
+        f"the kinematic error is not determined: {column} was already divided by the ratio, and {ratio:.6g} is that of the "
+        f"start set, which nothing checks; give {option} for its orders"
+    )
+    return replace(errors, orders=tuple(each for each in errors.orders if each.shaft == "output"), remarks=(why,))
+
+
+def _unchecked(taken: PreparedLog, file: Recognised, estimates: Sequence[FileEstimate], checks: Set[str]) -> dict[str, str]:
+    """Return ratio and torque constant, with their values, if estimates scale with them and no check of the log is theirs.
+
+    An angle that was multiplied by the ratio does not check it.
+    """
+    effort = taken.log.effort
+    if taken.in_current or effort == "voltage" or not taken.has_friction:
         return {}
-    values = {
-        "ratio": f"{abs(taken.drive.gear.kinematics.ratio):.6g}",
-        "torque constant": f"{float(getattr(taken.drive.motor, 'torque_constant', 0.0)):.4g} N·m/A",
-    }
+    ratio = abs(taken.drive.gear.kinematics.ratio)
+    values = {"ratio": f"{ratio:.6g}"}
+    if effort == "current":
+        values["torque constant"] = f"{float(getattr(taken.drive.motor, 'torque_constant', 0.0)):.4g} N·m/A"
+    elif "ratio" not in file.constants:
+        values["ratio"] += ", of the start set"
+    if effort == "joint_torque":
+        dry = next((each.value for each in estimates if each.path == COULOMB and not each.why), None)
+        at_output = "" if dry is None else f"; Coulomb friction at the output is {dry * ratio:.4g} N·m with any ratio"
+        values["ratio"] += f" (friction at the input scales with it{at_output})"
+    elif effort == "input_torque":
+        of_speed = "" if "input_angle" in file.columns else "viscous friction, "
+        values["ratio"] += f" ({of_speed}inertia and gravity scale with it)"
+    checks = checks - {RATIO_OF_ENCODERS} if "reflected_angle" in file.columns else checks
     return {name: value for name, value in values.items() if not checks & CHECKS_OF[name]}
 
 
-def _scales(unchecked: Mapping[str, str]) -> Iterator[str]:
+def _scales(unchecked: Mapping[str, str], effort: str) -> Iterator[str]:
     """Yield the sentence about numbers of the drive that a log does not check."""
+    if effort != "current":
+        yield from (f"nothing checks the {name}, {value}" for name, value in unchecked.items())
+        return
     names = [f"the {name}, {value}" for name, value in unchecked.items()]
     if len(names) == 2:
         yield f"one encoder checks neither {', nor '.join(names)}: friction, inertia and gravity scale with them"

@@ -294,7 +294,7 @@ def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable
     if unsure:
         yield f"other laws fit as well: ± includes how far their {', '.join(unsure)} differs"
     yield from thinned(table.samples, len(table.speed))
-    yield from unused(recording, ("speed", "torque", *CONDITIONS))
+    yield from unused(recording, ("speed", "torque", "current", *CONDITIONS))
     if (left_out := int(np.sum(~best.fit.training))) > 0:
         yield f"{left_out} of {len(table.speed)} rows are outliers, and left out"
     yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, UNITS))

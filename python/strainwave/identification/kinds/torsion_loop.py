@@ -29,7 +29,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, measured, needed
 from strainwave.identification.reading.sides import pair
 from strainwave.identification.results.curves import curves_of
-from strainwave.identification.results.file_result import FileResult, Picture
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.identification.results.identifiability import JudgedFit
@@ -134,8 +134,8 @@ class Torsion(Kind):
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
         )  # fmt: skip
         if in_series:
-            own = tuple(replace(each, path=each.path.replace("gear.stiffness.k", SERIES)) for each in estimates)
-            return replace(result, estimates=own), known
+            assumed = {"series stiffness": f"{abs(in_series):.4g} N·m/rad, which the recorder assumed and did not measure"}
+            return replace(result, estimates=tuple(_in_series(estimates)), unchecked=assumed), known
         if whole.failed or known.knows_better("stiffness", estimates):
             return result, known
         # a loop at the input has friction inside, and an error of the table of friction becomes hysteresis
@@ -252,6 +252,13 @@ def _computed(twist: Column, torque: Column, stiffness: float) -> str:
         "on a lever, a load cell, or the current of the motor in slow motion both ways does. The gear keeps its own spring, "
         "which is far stiffer: give a drive whose angles are those on both sides of the spring this stiffness instead"
     )
+
+
+def _in_series(estimates: Sequence[FileEstimate]) -> Iterator[FileEstimate]:
+    """Yield the estimates of a spring behind the gear: nothing measured its stiffness, or what its torque leaves."""
+    for each in estimates:
+        path = each.path.replace("gear.stiffness.k", SERIES)
+        yield replace(each, path=path, sigma=np.inf, why=ASSUMED_BY_RECORDER, in_combination=False)
 
 
 def _place(loop: TorsionLoop) -> str:

@@ -40,6 +40,7 @@ MAX_ANSWERS = 18  # of one question: two for each of eight joints, and for all
 MIN_MOTION = 0.02  # rad: another joint that moves by less rests
 RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
 STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
+SINGLES = "single numbers, not used: "
 REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
 
 
@@ -55,6 +56,7 @@ class Recognised(Presented):
         side: at which it was measured, if that is one
         why: what determines it, in short sentences
         remarks: what was left out, assumed or corrected, in short sentences
+        left_out: those of the remarks that list what the file contains and nothing uses
         constants: numbers that a person gave with it
         recording: the channels in SI units, with the names of `CHANNELS`
         neighbours: the columns of the recording with the angles of other joints that move, by the names of these joints
@@ -92,6 +94,7 @@ class Recognised(Presented):
     is_of_robot: bool = False
     units_given: tuple[str, ...] = ()
     units_assumed: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -239,6 +242,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
     except ValueError as error:
         raise ValueError(one_line(f"{table.file}: {error}")) from None
     unused = _unused(table, list(used.values()))
+    left_out = (*table.left_out, *(each for each in of_file if each.startswith(SINGLES)), *_of_unused(unused.values()))
     return Recognised(
         source.path,
         roles.kind,
@@ -260,6 +264,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         is_of_robot=any(column.robot for column in roles.columns.values()),
         units_given=tuple(name for name, each in roles.columns.items() if each.sure and each.unit and not each.label.unit),
         units_assumed=tuple(name for name, each in roles.columns.items() if not each.sure),
+        left_out=left_out,
     )
 
 
@@ -399,7 +404,7 @@ def _with_single_numbers(table: OpenTable, given: FileMapping) -> tuple[FileMapp
         remarks.append(f"{name} = {singles.pop(name):g} is taken for the rate of its rows: {rate:g} Hz")
         given = given.updated(FileMapping(constants={"rate": rate}))
     if singles:
-        remarks.append(f"single numbers, not used: {listed(f'{name} = {value:g}' for name, value in singles.items())}")
+        remarks.append(f"{SINGLES}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
     return given, remarks
 
 

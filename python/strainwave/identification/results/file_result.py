@@ -28,6 +28,7 @@ Subject = Literal["torque", "friction", "twist", "error", ""]
 UNITS_OF_EFFORT = ("N.m", "A", "V")
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
+ASSUMED_BY_RECORDER = "it is the stiffness that the recorder assumed, and was not measured"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
 

@@ -20,6 +20,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
 from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.typeset import percent
 
 from tests.support.samples import sample
 
@@ -90,7 +91,8 @@ def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation
         files = of("a.csv", {path: 0.05}), of("b.csv", {path: 0.05 * factor})
         (check,) = between_files(combine(files), files)
         assert check.failed == fails, factor
-        assert "standard deviations apart" in check.message
+        assert f"they differ by {percent(factor - 1.0)}; runs of one gear differ by up to " in check.message
+        assert check.message.endswith("; a.csv is taken because its standard deviation is the smaller")
 
 
 def fitted(name: str, law: Law, noise: float = 1e-4) -> FileResult:

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.identify import identify
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER
+from strainwave.report.first_screen import is_start_set, next_commands
 
 STIFFNESS = 130.0  # N.m/rad
 TIME = np.arange(0.0, 8.0, 0.005)
@@ -27,8 +29,15 @@ def test_the_spring_is_stated_beside_what_its_torque_does_not_check(tmp_path: Pa
     columns = {"time": TIME, "position": joint, "motorPosition": joint + twist, "deflection": twist, "effort": effort}
     columns = {name: values for name, values in columns.items() if name != without}
     found = identify("csg-20-100", [written(tmp_path / "sea.csv", {**columns, "motorCurrent": current})])
-    (spring,) = found.parameters
-    assert spring.estimate.path == "series_stiffness"
-    assert spring.estimate.value == pytest.approx(STIFFNESS, abs=4.0 * spring.estimate.sigma + 0.05)
+    assert found.parameters == ()
+    assert not found.failed
     (file,) = found.files
+    (spring,) = file.estimates
+    assert spring.path == "series_stiffness"
+    assert spring.value == pytest.approx(STIFFNESS, abs=0.2)
+    assert spring.why == ASSUMED_BY_RECORDER
+    assert not np.isfinite(spring.sigma)
+    assert found.unchecked["series stiffness"].endswith(" N·m/rad, which the recorder assumed and did not measure")
+    assert is_start_set(found)
+    assert [command.split()[1] for _, command in next_commands(found, tmp_path)] == ["show"]
     assert any("checks neither it nor effort" in remark for remark in file.remarks)
