@@ -29,7 +29,19 @@ import lazy_loader
 from strainwave import presented_models as _presented_models
 from strainwave._core import Gear
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_attribute, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name, imported at its first use; of one that is nearly a public name, name that one."""
+    try:
+        return _attribute(name)
+    except AttributeError as error:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __all__, 1)
+        meant = f"; did you mean {near[0]}?" if near else ""
+        raise AttributeError(f"{error}{meant}", name=name) from None
 
 
 def from_datasheet(ratio: float, **figures: Any) -> Gear:

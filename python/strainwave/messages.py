@@ -9,6 +9,7 @@ import re
 import reprlib
 import shlex
 from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
 
 MAX_TEXT = 60  # characters of a text in quotes
 MAX_LINE = 960  # characters of a whole message; with its options in both spellings a question has some 600
@@ -95,6 +96,17 @@ def shortened(value: object) -> str:
         return f"<{type(value).__name__} with too many digits>"
 
 
+def nearest_of(name: str, what: str, known: Iterable[str]) -> str:
+    """Return known names in a sentence, behind the one that is nearly this one.
+
+    >>> nearest_of("curent", "channels", ["current", "torque"])
+    'did you mean current? The channels are current, torque'
+    """
+    known = list(known)
+    near = get_close_matches(name, known, 1)
+    return f"{f'did you mean {unquoted(near[0])}? The' if near else 'the'} {what} are {', '.join(map(unquoted, known))}"
+
+
 def as_option(option: str, name: str, value: str) -> str:
     """Return the option that names a column or its unit, on the command line and in Python.
 
@@ -149,9 +161,8 @@ def pairs(option: str, values: Sequence[str] | None, known: set[str]) -> dict[st
             raise ValueError(f"{option} {value}: write it as {option} name=value")
         if name not in known:
             what = "constant" if option == "--constant" else "column"
-            raise ValueError(
-                f"{option} {value}: {name} is no {what} of these measurements; they have {', '.join(sorted(known))}"
-            )
+            fault = f"{option} {value}: {name} is no {what} of these measurements"
+            raise ValueError(f"{fault}; {nearest_of(name, f'{what}s', sorted(known))}")
         found[name] = given
     return found
 

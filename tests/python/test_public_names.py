@@ -28,3 +28,9 @@ def test_a_public_module_shows_its_own_names_alone(module: ModuleType) -> None:
 def _home(member: object, module: ModuleType) -> str:
     """Return the name of the module that defines a member; of a plain value that of the module it was found in."""
     return str(member.__name__ if isinstance(member, ModuleType) else getattr(member, "__module__", module.__name__))
+
+
+def test_a_name_that_is_nearly_public_is_answered_with_that_one() -> None:
+    with pytest.raises(AttributeError, match="identfy; did you mean identify"):
+        _ = sw.identfy  # type: ignore[attr-defined]
+    assert not hasattr(sw, "__wrapped__")

@@ -38,7 +38,7 @@ def predict(
 
     saved, opened = GearSet.read(gear), measurement_files(paths)
     read = paths_in(opened)
-    found = predicted(saved, opened, mapping=given.mapping_of(opened.files))
+    found = predicted(gear, opened, mapping=given.mapping_of(opened.files))
     files = predict_files(found, saved, Provenance.of_this_command(read))
     write_folder(out, files)
     print(predict_summary(found))

@@ -56,6 +56,9 @@ class FittedModel(Protocol):
     def estimates(self) -> Iterable[Estimated]: ...
 
 
+GEAR_FILE = "gear.toml"  # of a folder with the results of identify
+
+
 @dataclass(frozen=True)
 class GearSet(Pictured):
     """A gear, the source of each of its numbers, its ratings and the other parts of its drive.
@@ -526,15 +529,19 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
 
 def _file(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
-    if path.suffix.lower() in FORMATS and path.exists():
+    if path.suffix.lower() in FORMATS and path.is_file():
+        if path.name == "results.json" and (gear := path.with_name(GEAR_FILE)).exists():
+            raise ValueError(f"{unquoted(str(path))} is a result of identify; its gear is {gear} beside it")
         raise ValueError(
             f"{unquoted(str(path))} holds measurements, where a gear is asked for: give the name of a set, as hfuc-25-100, or "
             "a gear file, which ends in .toml"
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
-        return path
+        return path / GEAR_FILE if path.is_dir() else path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
     name = re.sub(r"[\s_]+", "-", name_or_path.strip().casefold())  # catalogues print HFUC-25-100
+    if name not in files and path.is_dir():
+        return path / GEAR_FILE
     if name not in files:
         near = difflib.get_close_matches(name, files)
         raise ValueError(

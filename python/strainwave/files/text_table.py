@@ -149,7 +149,8 @@ def _checked_text(file: str, data: bytes) -> bytes:
         if not set(_BEYOND_ASCII.findall(data)) <= _LETTERS_OF_WINDOWS:
             line = 1 + len(re.findall(rb"\r\n?|\n", data[: error.start]))
             what = "complete UTF-16" if error.encoding.startswith("utf-16") else "UTF-8"
-            raise ValueError(f"{file} line {line} is not {what}: byte {error.start} is 0x{data[error.start]:02x}") from None
+            where = f"byte {error.start} is 0x{data[error.start]:02x}"
+            raise ValueError(f"{file} line {line} is not {what}: {where}; if it is no text, save it as CSV") from None
         data = data.decode("cp1252").encode()
     if b"\0" in data:
         raise ValueError(f"{file} holds a zero byte at {data.index(0)}, which no text does; save it as UTF-8, not as UTF-16")

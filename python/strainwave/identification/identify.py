@@ -145,7 +145,7 @@ class Identified(ComparedByFields, Pictured, Reported):
 
 def identify(
     start_set: GearSet | str | Path,
-    files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
+    files: str | Path | Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
     mapping: Mapped = None,
     accept: bool = False,
@@ -179,7 +179,7 @@ def identify(
     >>> found.files[0].recognised.kind, round(found.gear_set.gear.friction_input.coulomb, 2), found.failed
     ('friction', 0.05, ())
     """
-    check_arguments(files, mapping)
+    check_arguments(start_set, files, mapping)
     if name is not None:
         check_line("name", name)
     opened = measurement_files(files)
@@ -234,17 +234,23 @@ def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[
     )  # fmt: skip
 
 
-def check_arguments(files: object, mapping: object) -> None:
-    """Raise an error for what are no files, and for what states nothing of them."""
+def check_arguments(gear: object, files: object, mapping: object) -> None:
+    """Raise an error for what is no gear, for what are no files, and for what states nothing of them."""
+    if isinstance(gear, Recording | Mapping | list | tuple):
+        raise TypeError(
+            f"the gear comes first, as a set, its name or the path of its file, then the measurements: not {shortened(gear)}"
+        )
+    if isinstance(files, Recording):
+        raise TypeError(f'of a Recording the kind is needed, as in {{"friction": table}}; the kinds are {listed(KINDS)}')
     if isinstance(files, Mapping):
         if unknown := [kind for kind in files if kind not in KINDS]:
             raise ValueError(f"{shortened(unknown[0])} is no kind of measurement; the kinds are {listed(KINDS)}")
         if wrong := [each for each in files.values() if not isinstance(each, str | Path | Recording)]:
             raise TypeError(f"a measurement must be a path or a Recording, not {shortened(wrong[0])}")
-    elif not isinstance(files, MeasurementFiles) and (
+    elif not isinstance(files, MeasurementFiles | str | Path) and (
         not isinstance(files, list | tuple) or not all(isinstance(each, str | Path) for each in files)
     ):
-        raise TypeError(f"files must be a list of paths, or a mapping from kinds to them, not {shortened(files)}")
+        raise TypeError(f"files must be a path, a list of paths, or a mapping from kinds to them, not {shortened(files)}")
     if mapping is not None and not callable(mapping) and not isinstance(mapping, FileMapping):
         raise TypeError(f"mapping must be a FileMapping, or a function that takes a path, not {shortened(mapping)}")
     if not files:

@@ -42,7 +42,7 @@ class Joints(Presented, Reported):
 
 def identify_joints(
     start: GearSet | str | Path,
-    files: Sequence[str | Path] | MeasurementFiles,
+    files: str | Path | Sequence[str | Path] | MeasurementFiles,
     *,
     mapping: Callable[[Path], FileMapping] | None = None,
     accept: bool = False,
@@ -62,7 +62,7 @@ def identify_joints(
         TypeError: as `identify`
         ValueError: no file can be read, more than `MAX_JOINTS` joints move, or none can be identified, with the reason of each
     """
-    check_arguments(files, mapping)
+    check_arguments(start, files, mapping)
     user_mapping = mapping or (lambda path: FileMapping())
     by_joint, left_out, nameless = dict[str, list[MeasurementFile]](), dict[str, str](), list[MeasurementFile]()
     opened = measurement_files(files)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Mapped, check_arguments, not_used, raise_question, read_measurements
 from strainwave.identification.kinds import kind_named
+from strainwave.identification.kinds.kind import NOT_PREDICTED
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import Measurement, MeasurementFiles, measurement_files
 from strainwave.identification.results.file_result import FileResult
@@ -21,7 +23,7 @@ from strainwave.progress import Progress, in_turn
 
 def predict(
     gear: GearSet | Gear | Drive | str | Path,
-    files: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
+    files: str | Path | Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
     *,
     mapping: Mapped = None,
     progress: Progress = None,
@@ -53,14 +55,14 @@ def predict(
     >>> [(each.name, round(each.value, 2)) for each in found.changed]
     [('dry friction', 1.2), ('viscous friction', 1.2)]
     """
-    check_arguments(files, mapping)
-    gear_set = _gear_set(gear)
+    check_arguments(gear, files, mapping)
+    gear_set, given = _gear_set(gear), str(gear) if isinstance(gear, str | Path) else "gear.toml"
     read, gear_set = read_measurements(measurement_files(files), mapping, gear_set)
     found, results = list[Prediction](), list[FileResult]()
     with in_turn(progress, len(read)) as turn:
         for file in read.values():
             turn(file.path.name if isinstance(file, Recognised) else file.name)
-            result = _predicted(file, gear_set) if isinstance(file, Recognised) else file
+            result = _predicted(file, gear_set, given) if isinstance(file, Recognised) else file
             if isinstance(result, FileResult):
                 results.append(result)
                 kind = "" if result.recognised is None else result.recognised.kind
@@ -78,10 +80,13 @@ def _gear_set(gear: GearSet | Gear | Drive | str | Path) -> GearSet:
     return GearSet.read(gear) if isinstance(gear, str | Path) else GearSet.of(gear, name="the gear", source="given")
 
 
-def _predicted(file: Recognised, gear_set: GearSet) -> Prediction | FileResult:
-    """Return the comparison of a file, or why there is none."""
+def _predicted(file: Recognised, gear_set: GearSet, given: str) -> Prediction | FileResult:
+    """Return the comparison of a file, or why there is none; `given` names the gear in the command to use instead."""
     gear_set = with_ratio(GearSoFar(gear_set), file).gear_set
     try:
         return kind_named(file.kind).predict(file.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
     except (ValueError, FloatingPointError) as error:
+        if NOT_PREDICTED in str(error):
+            words = ["strainwave", "identify", given, *map(str, file.parts or (file.path,)), *file.mapping.options]
+            error = ValueError(f"{error}; its estimates are compared by: {shlex.join(words)}")
         return not_used(file.path, error, file)

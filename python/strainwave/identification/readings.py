@@ -20,7 +20,7 @@ from strainwave.identification.checks.sizes import input_speed
 from strainwave.identification.evidence import MIN_ODDS, Effort, Record, Usual, efforts_of, record_of
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, recognise
+from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, in_words, recognise
 from strainwave.identification.reading.sides import GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -109,8 +109,19 @@ class _Way:
             of_effort = as_usual if self.is_usual else self.effort.answer
         if len(self.reading.samples):
             of_motion = f"{_percent(self.reading)} unexplained"
+        elif of_motion and self.effort is not None and self.reading.file is not None:
+            of_motion = in_words(self.reading.file, FileMapping(**of_effort.given))
         gives = (of_motion, f"{self.shown} {of_effort.gives}".strip())
-        return replace(of_effort.after(motion), gives="; ".join(filter(None, gives)))
+        return replace(self._of_any_joint(of_effort.after(motion)), gives="; ".join(filter(None, gives)))
+
+    def _of_any_joint(self, answer: Answer) -> Answer:
+        """Return an answer with the columns of all joints that the question named, so that another joint may be put into it."""
+        channel, column = ("", "") if self.effort is None else (self.effort.channel, self.effort.column)
+        named = self.reading.answer.given.get("columns", {}).get(channel, column)
+        if named == column:
+            return answer
+        units = {channel if name == column else name: unit for name, unit in answer.given["units"].items()}
+        return replace(answer, given={**answer.given, "columns": {**answer.given["columns"], channel: named}, "units": units})
 
 
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:

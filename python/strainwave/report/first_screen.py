@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from strainwave.files.gear_set import GEAR_FILE
 from strainwave.identification.identify import Identified
-from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.results.file_result import FileResult, Subject
 from strainwave.identification.results.parameter_state import ParameterState
 from strainwave.report import identify_figures as plots
@@ -74,14 +74,15 @@ def next_commands(found: Identified, folder: Path) -> list[tuple[str, str]]:
         found: the result
         folder: that its files are written into
     """
-    gear = folder / "gear.toml"
+    gear = folder / GEAR_FILE
     steps = [("See every number, and where it comes from", ["show", str(gear)])]
     if is_start_set(found):
         return _in_words(steps)
     compared = next((each for each in found.files if _is_predicted(each, found)), None)
     if compared is not None and compared.recognised is not None:
-        options = options_of(compared.recognised.mapping)
-        words = ["predict", str(gear), str(compared.recognised.path), *options, "--out", str(folder / "predict")]
+        options = compared.recognised.mapping.options
+        paths = map(str, compared.recognised.parts or (compared.recognised.path,))
+        words = ["predict", str(gear), *paths, *options, "--out", str(folder / "predict")]
         steps.insert(0, ("Compare a later recording: its name in place of this one", words))
     torque = [] if "peak_torque" in found.gear_set.ratings else ["--max-torque", LARGEST_TORQUE]
     largest = f" (largest torque in place of {LARGEST_TORQUE} N·m)" if torque else ""
@@ -125,17 +126,3 @@ def _is_predicted(file: FileResult, found: Identified) -> bool:
     ):
         return False
     return bool(file.estimates) and (read.kind == "friction" or found.gear_set.load is not None)
-
-
-def options_of(mapping: FileMapping) -> list[str]:
-    """Return what a person states of a file as options of a command.
-
-    >>> options_of(FileMapping(columns={"speed": "3"}, constants={"torque_constant": 0.0755}, side="input"))
-    ['--column', 'speed=3', '--constant', 'torque_constant=0.0755', '--side', 'input']
-    """
-    tables: tuple[tuple[str, Mapping[str, Any]], ...] = (
-        ("--column", mapping.columns), ("--unit", mapping.units), ("--constant", mapping.constants),
-    )  # fmt: skip
-    words = [word for option, table in tables for name, value in table.items() for word in (option, f"{name}={value}")]
-    single = {"--side": mapping.side, "--joint": mapping.joint, "--kind": mapping.kind}
-    return words + [word for option, value in single.items() if value is not None for word in (option, value)]

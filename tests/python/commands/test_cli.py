@@ -130,7 +130,12 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
         (["identify", "hfuc-25-100"], ("FILE",)),
         (
             ["identify", "hfuc-25-100", "table.csv", "--unit", "spee=rpm"],
-            ("spee", "no column of these measurements"),
+            ("spee", "no column of these measurements", "did you mean speed?"),
+        ),
+        (["identify", "hfuc-25-100", "table.csv", "--column", "curent=torque"], ("did you mean current?",)),
+        (
+            ["identify", "hfuc-25-100", "table.csv", "--constant", "torqueconstant=.1"],
+            ("did you mean torque_constant?", "The constants are load_inertia"),
         ),
         (
             ["identify", "hfuc-25-100", "table.csv", "--column", "speed"],

@@ -279,3 +279,49 @@ def test_what_a_remark_adds_is_accepted(tmp_path: Path, name: str) -> None:
     for options in dict.fromkeys(added):
         again = strainwave(*command, *map(with_number, shlex.split(options)), folder=tmp_path)
         assert again.returncode in (0, 3), f"{options}: {again.stderr}"
+
+
+def test_a_question_counts_in_the_unit_of_each_answer(tmp_path: Path) -> None:
+    written(tmp_path / "a.csv", "spd,i_avr", RPM, 3.0 * FRICTION)
+    asked = strainwave("identify", "hfuc-25-100", "a.csv", folder=tmp_path).stderr
+    in_milliamperes = [line for line in asked.splitlines() if "current of the motor in mA" in line]
+    assert in_milliamperes
+    assert all("current to 0.329 A" in line for line in in_milliamperes), asked
+
+
+def test_a_misspelt_unit_is_answered_with_the_one_that_is_meant(tmp_path: Path) -> None:
+    written(tmp_path / "a.csv", "speed [rmp],torque [mNm]", 10.0 * RPM, FRICTION)
+    asked = strainwave("identify", "hfuc-25-100", "a.csv", folder=tmp_path)
+    assert 'unit "rmp" of speed is not known; did you mean rpm?' in asked.stderr
+    assert commands_in(asked) == [["identify", "hfuc-25-100", "a.csv", "--unit", "speed=rpm"]]
+    assert strainwave(*commands_in(asked)[0], folder=tmp_path).returncode == 0
+
+
+@pytest.mark.slow("commands")
+def test_the_next_command_has_all_files_of_a_recording(tmp_path: Path) -> None:
+    one_quantity(tmp_path)
+    names = [f"run_{name}.csv" for name in ("position", "velocity", "effort")]
+    done = strainwave("identify", "csg-20-100", *names, "--joint", 1, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    (line,) = [line for line in done.stdout.splitlines() if line.startswith("  strainwave predict")]
+    assert all(name in line for name in names)
+    assert strainwave(*shlex.split(line)[1:], folder=tmp_path).returncode == 0
+
+
+TABLE = "speed [rad/s],torque [N.m]\n" + "".join(f"{speed},{0.05 + 3e-4 * speed}\n" for speed in (5, 20, 80, 200))
+
+
+@pytest.mark.slow("commands")
+def test_a_folder_of_results_is_its_gear_and_other_files_of_it_name_that(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text(TABLE)
+    assert strainwave("identify", "hfuc-20-80", "a.csv", "--out", "saved", folder=tmp_path).returncode == 0
+    assert strainwave("predict", "saved", "a.csv", folder=tmp_path).returncode == 0
+    assert strainwave("predict", "./saved", "a.csv", folder=tmp_path).returncode == 0
+    refused = strainwave("export", "joint", "saved/results.json", folder=tmp_path).stderr
+    assert "its gear is saved/gear.toml beside it" in refused
+
+
+def test_what_is_not_predicted_names_the_command_that_compares_it(tmp_path: Path) -> None:
+    loop(tmp_path)
+    refused = strainwave("predict", "hfuc-20-80", "a.csv", "--side", "output", folder=tmp_path).stderr
+    assert refused.rstrip().endswith("strainwave identify hfuc-20-80 a.csv --side output"), refused

@@ -359,8 +359,8 @@ def test_columns_and_units_that_are_not_there_are_refused(
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"torque [N.m]\n1\n2\x90\n", " line 3 is not UTF-8: byte 16 is 0x90"),
-        (b"\xff\xfet\0\0\xd8", " line 1 is not complete UTF-16: byte 4 is 0x00"),
+        (b"torque [N.m]\n1\n2\x90\n", " line 3 is not UTF-8: byte 16 is 0x90; if it is no text, save it as CSV"),
+        (b"\xff\xfet\0\0\xd8", " line 1 is not complete UTF-16: byte 4 is 0x00; if it is no text, save it as CSV"),
         (
             "torque [N.m]\n1\n".encode("utf-16-le"),
             " holds a zero byte at 1, which no text does; save it as UTF-8, not as UTF-16",

@@ -206,15 +206,27 @@ def test_phases_a_turn_apart_are_equal() -> None:
 @pytest.mark.parametrize(
     ("files", "mapping", "said"),
     [
-        (3, None, "files must be a list of paths"),
-        ("table.csv", None, "files must be a list of paths"),
-        ([3], None, "files must be a list of paths"),
+        (3, None, "files must be a path, a list of paths"),
+        ([3], None, "files must be a path, a list of paths"),
+        (sw.Recording({"speed": np.ones(3)}, {"speed": "rad/s"}), None, r'kind is needed, as in {"friction": table}'),
         (["table.csv"], 3, "mapping must be a FileMapping, or a function"),
     ],
 )
 def test_what_are_no_files_is_refused(files: Any, mapping: Any, said: str) -> None:
     with pytest.raises(TypeError, match=said):
         identify("hfuc-20-80", files, mapping=mapping)
+
+
+def test_the_gear_comes_before_the_measurements() -> None:
+    with pytest.raises(TypeError, match="the gear comes first"):
+        identify({"friction": "table.csv"}, "hfuc-20-80")  # type: ignore[arg-type]
+
+
+def test_one_path_is_one_file(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text("speed [rad/s],torque [N.m]\n" + "".join(f"{speed},{0.05 + 3e-4 * speed}\n" for speed in (5, 20, 80, 200)))
+    assert [each.name for each in identify("hfuc-20-80", str(path)).files] == ["table.csv"]
+    assert [each.name for each in sw.predict("hfuc-20-80", path)] == ["table.csv"]
 
 
 def voltage_log(path: Path, sign: float = 1.0) -> Path:

@@ -154,7 +154,7 @@ def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> 
 
 
 def friction_of_log(
-    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float, column: str = "NAME"
+    law: Any, start: Any, speeds: Array, effort: str, source: str, *, ratio: float, column: str = "NAME", constant: float = 0.0
 ) -> Iterator[Check]:
     """Yield the check of the size of the friction of a log; none without friction, or without a gear to compare it with.
 
@@ -166,13 +166,17 @@ def friction_of_log(
         source: name of the file
         ratio: of the gear, by which friction differs if the torque is counted at the other side
         column: name of the torque in the file
+        constant: that a person gave of the motor [N.m/A]; 0 if none
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
     found, before = float(law.steady(speed)), float(start.steady(speed))
     if speed <= 0.0 or before <= 0.0 or found < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
         return
-    unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
     factor = found / before
+    unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
+    if effort == "current" and constant:
+        constant *= 1e-3 if factor > 1.0 else 1e3
+        unit += f", or between mN·m/A and N·m/A (--constant torque_constant={constant:.6g})"
     near_thousand = abs(abs(np.log(factor)) - np.log(1000.0)) < np.log(MAX_FACTOR_LEFT)
     mistake = f"a factor of 1000 lies between {unit}; " if near_thousand else _other_side(factor, effort, abs(ratio), column)
     remedy = f"{mistake}see whether units, side, ratio and torque constant are right, or start from a set like this gear"

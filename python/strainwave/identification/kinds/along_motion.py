@@ -120,7 +120,10 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     name, speed = file.path.name, log.motion.speed
     ratio, column = start.kinematics.ratio, file.columns[log.effort]
     if not in_current and taken.has_friction:
-        checks += friction_of_log(law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column)
+        given = file.constants.get("torque_constant", 0.0)
+        checks += friction_of_log(
+            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, constant=given
+        )
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),

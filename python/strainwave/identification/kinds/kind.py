@@ -19,6 +19,8 @@ from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
 
+NOT_PREDICTED = "only logs and tables of friction are predicted"
+
 
 @dataclass(frozen=True)
 class Ranked:
@@ -122,5 +124,4 @@ class Kind(ABC):
         Raises:
             ValueError: files of this kind are not predicted, or the saved gear lacks what a prediction needs
         """
-        known = "only logs and tables of friction are predicted; identify compares the estimates of other files"
-        raise ValueError(f"it is {self.title}: {known}")
+        raise ValueError(f"it is {self.title}: {NOT_PREDICTED}")

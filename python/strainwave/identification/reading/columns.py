@@ -58,22 +58,27 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
 
 def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     """Return the joints whose angles change, of a file with several of which a person named none."""
+    spans = spans_of_joints(table, mapping)
+    least = MIN_MOTION * max(spans.values(), default=0.0)
+    return [which for which, span in spans.items() if span > 0.0 and span >= least]
+
+
+def spans_of_joints(table: OpenTable, mapping: FileMapping) -> dict[str, float]:
+    """Return how far each joint moves, in its unit in the file, of a file with several of which a person named none."""
     if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
-        return []
+        return {}
     groups = dict[Channel, dict[str, int]]()
     for column in _by_name(table, mapping):
         if column.channel.quantity == "angle" and column.channel.measured and column.which:
             angles = groups.setdefault(column.channel, {})
             if column.which in angles:
-                return []
+                return {}
             angles[column.which] = column.position
     angles = max(groups.values(), key=len, default={})
     if len(angles) < 2:
-        return []
+        return {}
     numbers, _ = table.measured([ColumnSource(place, which, which, "1") for which, place in angles.items()])
-    spans = {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
-    least = MIN_MOTION * max(spans.values(), default=0.0)
-    return [which for which, span in spans.items() if span > 0.0 and span >= least]
+    return {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
 
 
 def numbered_joint(table: OpenTable) -> list[str]:

@@ -21,18 +21,17 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from functools import reduce
 from pathlib import Path
 from typing import Any, NamedTuple, get_args
 
-from strainwave import arguments
+from strainwave import arguments, questions
 from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit, convert
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.names import Side
-from strainwave.messages import listed, one_line, quoted, shortened
+from strainwave.messages import nearest_of, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
 
 
@@ -110,6 +109,20 @@ class FileMapping:
         for name, value, choices in (("kind", self.kind, KINDS), ("side", self.side, get_args(Side))):
             if value is not None:
                 _check_known(f"{name} = {shortened(value)}", value, choices, f"{name}s")
+
+    @property
+    def options(self) -> list[str]:
+        """What a person states, but for signs, as options of a command.
+
+        >>> FileMapping(columns={"speed": "3"}, constants={"torque_constant": 0.0755}, side="input").options
+        ['--side', 'input', '--column', 'speed=3', '--constant', 'torque_constant=0.0755']
+        """
+        words = [
+            word for name, option in questions.SINGLE.items() if (value := getattr(self, name)) for word in (option, value)
+        ]
+        for name, option in questions.TABLES.items():
+            words += [word for entry, value in getattr(self, name).items() for word in (option, f"{entry}={value}")]
+        return words
 
     def updated(self, other: FileMapping) -> FileMapping:
         """Return this with the entries of another one, which replace those that both have."""
@@ -231,6 +244,4 @@ def check_constant(place: str, name: str, value: float) -> float:
 
 def _check_known(place: str, name: str, known: Collection[str], what: str) -> None:
     if name not in known:
-        near = get_close_matches(str(name), list(known), 1)
-        meant = f"did you mean {near[0]}? The" if near else "the"
-        raise ValueError(one_line(f"{place} is not known; {meant} {what} are {listed(known)}"))
+        raise ValueError(one_line(f"{place} is not known; {nearest_of(str(name), what, known)}"))

@@ -14,13 +14,21 @@ from strainwave.files.array_table import ArrayTable
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
+from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
 from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import USUAL_FIRST, chosen, moving_joints, numbered_joint, which_joint
+from strainwave.identification.reading.columns import (
+    USUAL_FIRST,
+    chosen,
+    moving_joints,
+    numbered_joint,
+    spans_of_joints,
+    which_joint,
+)
 from strainwave.identification.reading.layout import interleaved, nameless
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
 from strainwave.identification.reading.missing_units import other_units
@@ -29,7 +37,7 @@ from strainwave.identification.reading.names import Side, meaning, which_of, wor
 from strainwave.identification.reading.roles import ColumnRoles, names_of
 from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
-from strainwave.identification.reading.values import read
+from strainwave.identification.reading.values import misspelt_units, read
 from strainwave.messages import listed, one_line, quoted
 from strainwave.presentation import Presented
 from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
@@ -37,6 +45,7 @@ from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
 Array = NDArray[np.float64]
 
 MAX_ANSWERS = 18  # of one question: two for each of eight joints, and for all
+MAX_ANSWERS_OF_JOINTS = 9  # of a question about more than the joint; beyond, the answers of one joint are shown
 MIN_MOTION = 0.02  # rad: another joint that moves by less rests
 RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
 STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
@@ -71,6 +80,7 @@ class Recognised(Presented):
         is_of_robot: True if its channels have the names of a robot's joints, whose motions are in radians by convention
         units_given: channels whose unit a person gave, and the file does not contain
         units_assumed: channels whose unit neither the file nor a person states, and no number determines
+        parts: all files of a recording that has one for each quantity; empty for a recording in one file
     """
 
     path: Path
@@ -95,6 +105,7 @@ class Recognised(Presented):
     units_given: tuple[str, ...] = ()
     units_assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    parts: tuple[Path, ...] = ()
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -131,9 +142,12 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     """
     source, given = measurement_file(file), mapping or FileMapping()
     try:
-        return _as_read(source, given)
+        read = _as_read(source, given)
+        if read.kind == "effort" and (question := misspelt_units(source.table, given)):
+            raise question
+        return read
     except QuestionError as question:
-        raise _with_answers_that_work(source, given, question) from None
+        raise _with_answers_that_work(source, given, misspelt_units(source.table, given) or question) from None
 
 
 def _as_read(source: MeasurementFile, given: FileMapping) -> Recognised:
@@ -172,8 +186,14 @@ def _with_answers_that_work(source: MeasurementFile, given: FileMapping, questio
         except ValueError as error:
             why_not = why_not or f"; not {answer.label}: {error}"
     fault = question.question if answers else f"{question.question}{why_not}"
-    but_for_joint = list(dict.fromkeys(_but_for_joint(each) for each in answers))
-    answers.sort(key=lambda each: but_for_joint.index(_but_for_joint(each)))
+    groups = dict[str, list[Answer]]()
+    for answer in answers:
+        groups.setdefault(_but_for_joint(answer), []).append(answer)
+    answers = [answer for group in groups.values() for answer in group]
+    if len(answers) > MAX_ANSWERS_OF_JOINTS and 1 < len(groups) < len(answers):
+        moved = spans_of_joints(source.table, given)
+        answers = [max(group, key=lambda each: moved.get(each.given.get("joint", ""), 0.0)) for group in groups.values()]
+        fault += f"; the joint that moves most is shown, and the others are {listed([*moved, ALL_JOINTS])}"
     fault += f"; the first {MAX_ANSWERS} of {len(answers)} answers are" if len(answers) > MAX_ANSWERS else ""
     return QuestionError(one_line(fault), answers[:MAX_ANSWERS]).of(source.table.file)
 
@@ -206,7 +226,7 @@ def _ways_on(
         return [replace(each, given={**each.given, "joint": ALL_JOINTS}, gives="") for each in ways]
     answered |= answer.stated
     try:
-        return [replace(answer, gives=_in_words(_as_read(source, mapping)))]
+        return [replace(answer, gives=in_words(_as_read(source, mapping)))]
     except QuestionError as following:
         if following.question == question.question:
             return []
@@ -214,11 +234,22 @@ def _ways_on(
         return [way.after(answer) for way in ways]
 
 
-def _in_words(file: Recognised) -> str:
-    """Return the kind of a file, and how large its motions and efforts are."""
-    names = [name for name in file.columns if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST]
-    recording = file.recording
-    sizes = [f"{name} to {np.abs(recording[name]).max():.3g} {recording.unit(name)}" for name in names if name in recording]
+def in_words(file: Recognised, given: FileMapping | None = None) -> str:
+    """Return the kind of a file, and how large its motions and efforts are.
+
+    Args:
+        file: as it is read
+        given: channels and units of its columns, by their names in the file, in place of those that it is read with
+    """
+    given, recording = given or FileMapping(), file.recording
+    called = {column: channel for channel, column in given.columns.items()}
+    sizes = []
+    for name, column in file.columns.items():
+        if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST and name in recording:
+            size, channel = float(np.abs(recording[name]).max()), called.get(column, name)
+            if unit := given.units.get(column):
+                size = convert(convert(size, recording.unit(name), file.units[name]), unit, CHANNELS[channel].unit)
+            sizes.append(f"{channel} to {size:.3g} {CHANNELS[channel].unit if unit else recording.unit(name)}")
     return f"{kind_named(file.kind).title}; {listed(sizes)}"
 
 
@@ -265,6 +296,7 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         units_given=tuple(name for name, each in roles.columns.items() if each.sure and each.unit and not each.label.unit),
         units_assumed=tuple(name for name, each in roles.columns.items() if not each.sure),
         left_out=left_out,
+        parts=tuple(part.path for part in source.parts if source.run is None),
     )
 
 

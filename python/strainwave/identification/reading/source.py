@@ -132,7 +132,9 @@ class MeasurementFiles(NamedTuple):
 Measurement = str | Path | Recording
 
 
-def measurement_files(paths: Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles) -> MeasurementFiles:
+def measurement_files(
+    paths: str | Path | Sequence[str | Path] | Mapping[str, Measurement] | MeasurementFiles,
+) -> MeasurementFiles:
     """Return the files that paths stand for: of a folder those that may be measurements, the folder itself if it has none.
 
     A mapping has the path of a file or a recording by the kind of measurement; a recording is called as its title has it.
@@ -144,7 +146,7 @@ def measurement_files(paths: Sequence[str | Path] | Mapping[str, Measurement] | 
         return paths
     if isinstance(paths, Mapping):
         return MeasurementFiles([run for kind, each in paths.items() for run in _with_runs(_of_kind(kind, each))], [])
-    folders = [_below(Path(path)) for path in paths]
+    folders = [_below(Path(path)) for path in ([paths] if isinstance(paths, str | Path) else paths)]
     files = [MeasurementFile(path) for path in dict.fromkeys(file for folder in folders for file in folder.files)]
     files = [run for file in with_parts(files) for run in _with_runs(file)]
     return MeasurementFiles(files, [link for folder in folders for link in folder.links])

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from difflib import get_close_matches
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import ColumnSource
+from strainwave.files.labels import ColumnSource, is_unit
 from strainwave.files.table_format import OpenTable
-from strainwave.files.units import convert, counts
+from strainwave.files.units import convert, counts, is_share
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.incomplete_units import check_units, with_counts
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.missing_units import Assumed, units_of
-from strainwave.identification.reading.names import UNITS
+from strainwave.identification.reading.names import UNITS, meaning
 from strainwave.identification.reading.recorders import with_registers
 from strainwave.identification.reading.times import run_on
-from strainwave.messages import as_option, listed, one_line, quoted
+from strainwave.messages import as_option, listed, one_line, quoted, unquoted
 from strainwave.questions import Answer, QuestionError
 
 Array = NDArray[np.float64]
@@ -37,6 +38,10 @@ OTHER_UNITS: dict[str, tuple[str, str]] = {
     "temperature": ("K", "degC"),
     "vibration": ("mm/s2", "m/s2"),
 }  # usual ones, of which an example differs from the unit that is taken
+# Units for which another one may be meant, of the quantities that a measurement needs.
+NEARLY_KNOWN = {name: (*OTHER_UNITS[name], *more) for name, more in (
+    ("time", ("us",)), ("angle", ("rev",)), ("speed", ("deg/s", "rev/s")), ("torque", ()), ("current", ()),
+)}  # fmt: skip
 MAX_LISTED = 4  # names, if none is known
 
 
@@ -80,6 +85,20 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
         found = [column for column in found if column not in empty]
     return _whole_rows(table, found, remarks)
+
+
+def misspelt_units(table: OpenTable, mapping: FileMapping) -> QuestionError | None:
+    """Return the question which units a header means by those that are not known, but nearly; None if it has none such."""
+    meant, words = dict[str, str](), list[str]()
+    for label in table.labels:
+        named = meaning(label._replace(unit=None))
+        if named is None or label.unit is None or label.name in mapping.units or named.quantity not in NEARLY_KNOWN:
+            continue
+        near = get_close_matches(label.unit, NEARLY_KNOWN[named.quantity], 1)
+        if near and not (is_unit(label.unit) or counts(label.unit) or is_share(label.unit)):
+            meant[label.name] = near[0]
+            words.append(f"unit {quoted(label.unit)} of {unquoted(label.name)} is not known; did you mean {near[0]}?")
+    return QuestionError(" ".join(words), [Answer(listed(meant.values()), {"units": meant})]) if meant else None
 
 
 def _with_time_that_runs_on(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:

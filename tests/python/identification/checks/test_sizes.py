@@ -159,6 +159,13 @@ def test_only_friction_of_a_gear_is_compared(effort: str, coulomb: float, ratio:
     assert [check.failed for check in checks] == failed
 
 
+def test_a_torque_constant_of_the_wrong_unit_is_named_with_the_right_one() -> None:
+    law, speeds = sw.friction.Coulomb(coulomb=50.0, breakaway=50.0, viscous=0.0), np.linspace(-100.0, 100.0, 50)
+    known = law.replace(coulomb=0.05, breakaway=0.05)
+    (check,) = friction_of_log(law, known, speeds, "current", "log.csv", ratio=100.0, constant=75.5)
+    assert "or between mN·m/A and N·m/A (--constant torque_constant=0.0755)" in check.remedy
+
+
 def test_a_table_at_one_load_determines_coulomb_friction_and_loss_together_only() -> None:
     torque = 0.05 + 0.002 * 10.0 + 3e-4 * SPEED
     columns = {**table(SPEED, torque).columns, "load_torque": np.full(len(SPEED), 800.0)}

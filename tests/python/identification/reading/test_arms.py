@@ -62,9 +62,11 @@ def test_a_table_without_names_is_read_by_its_layout(tmp_path: Path, seen: dict[
         ValueError, match=r"column 1 is the time, columns 2 to 7 are the angle of joints, columns 8 to 13 "
     ) as refused:
         recognise(tmp_path / "log.csv")
-    joints = [*map(str, range(1, 7)), "all"]
-    ways = [f"--joint {joint} --column {channel}=block3" for channel in ("joint_torque", "current") for joint in joints]
-    assert options_of(refused.value)[: len(ways)] == ways, "both questions are answered at once"
+    ways = [
+        f"--joint 2 --column {channel}={block}" for block in ("block3", "block4") for channel in ("joint_torque", "current")
+    ]
+    assert options_of(refused.value) == ways, "both questions are answered at once, with the joint that moves most"
+    assert "the others are 1, 2, 3, 4, 5, 6, all" in str(refused.value)
     is_joint(recognise(tmp_path / "log.csv", FileMapping(joint="2", columns={"current": "block3"})), seen, 1, "current")
     columns = {"time": "1", "output_angle": "3", "output_speed": "9", "current": "15"}
     is_joint(recognise(tmp_path / "log.csv", FileMapping(columns=columns)), seen, 1, "current")
