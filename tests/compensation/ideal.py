@@ -52,7 +52,7 @@ class Course:
     @classmethod
     def at(cls, drive: sw.Drive, input_speed: float, duration: float, **others: Any) -> Course:
         output_speed = input_speed / RATIO
-        start = {} if "start" in others else {"initial": {"input_speed": input_speed, "output_speed": output_speed}}
+        start = {} if "initial" in others else {"initial": {"input_speed": input_speed, "output_speed": output_speed}}
         return cls(sw.simulate(drive, sw.scenario.ramp(output_speed, duration), sample=PERIOD, **start, **others))
 
     @property

@@ -63,7 +63,7 @@ def test_smoothing_takes_a_wave_over_the_cells_away_at_its_rate(mode: int) -> No
     wave = 1e-4 * np.cos(2.0 * np.pi * mode * np.arange(CELLS) / CELLS)
     rest = drive.rest().replace({f"control.compensation.learning.value[{j}]": value for j, value in enumerate(wave)})
     rest = rest.replace(input_speed=speed, output_speed=speed / RATIO)
-    after = values(Course.at(drive, speed, duration, start=rest).run.end)
+    after = values(Course.at(drive, speed, duration, initial=rest).run.end)
     rate = sigma * (1.0 - np.cos(2.0 * np.pi * mode / CELLS)) / CELLS
     assert after == pytest.approx(wave * np.exp(-rate * duration), abs=0.05e-4 * (mode > 0))
 

@@ -119,7 +119,9 @@ class Effort:
     def evidence(self, record: Record, usual: Usual) -> float:
         """Return the logarithm of the probability of a record in this reading, but for a constant of all readings."""
         friction = usual.friction(self.faster * record.speed)
-        density = _density(record.friction * self.torque / friction, float(np.hypot(FRICTION_SPREAD, self.spread)))
+        density = 1.0  # a set without friction says nothing of it
+        if friction > 0.0:
+            density = _density(record.friction * self.torque / friction, float(np.hypot(FRICTION_SPREAD, self.spread)))
         if self.side is None and self.channel == "joint_torque":
             is_less = record.friction * self.torque < friction
             density = (1.0 - SHARE_BEHIND_GEAR) * density + SHARE_BEHIND_GEAR * is_less / RANGE_BEHIND_GEAR

@@ -120,8 +120,9 @@ class _Way:
         named = self.reading.answer.given.get("columns", {}).get(channel, column)
         if named == column:
             return answer
-        units = {channel if name == column else name: unit for name, unit in answer.given["units"].items()}
-        return replace(answer, given={**answer.given, "columns": {**answer.given["columns"], channel: named}, "units": units})
+        columns = {**answer.given.get("columns", {}), channel: named}
+        units = {channel if name == column else name: unit for name, unit in answer.given.get("units", {}).items()}
+        return replace(answer, given={**answer.given, "columns": columns, **({"units": units} if units else {})})
 
 
 def decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised:

@@ -175,7 +175,7 @@ def test_columns_of_a_loop_may_have_other_names_and_no_units(tmp_path: Path) -> 
     (tmp_path / "mine.csv").write_text("turn,load\n" + "".join(f"{turn},{load}\n" for turn, load in rows))
     asked = strainwave("rig", "analyse", "mine.csv", folder=tmp_path)
     assert (asked.returncode, asked.stdout) == (2, "")
-    assert "strainwave rig analyse mine.csv --column torque=load" in asked.stderr
+    assert "strainwave rig analyse mine.csv --side input --column torque=load" in asked.stderr
     named = ("--column", "input_angle=turn", "--column", "input_torque=load")
     asked = strainwave("rig", "analyse", "mine.csv", *named, folder=tmp_path)
     assert (asked.returncode, asked.stdout) == (2, "")

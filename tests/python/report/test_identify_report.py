@@ -137,6 +137,7 @@ def test_the_error_on_data_held_out_stands_beside_plain_least_squares(found: Ide
     assert "; RMS error on data held out 0.281 A (plain least squares 0.363 A), 23 % of what varies; " in text_of(html)
 
 
+@pytest.mark.slow("report")
 def test_each_file_is_listed_with_what_it_is_and_why(page: str) -> None:
     text = section(page, "files").text
     for expected in (

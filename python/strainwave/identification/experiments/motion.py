@@ -23,6 +23,7 @@ REST_SIGMA = 3.0  # standard deviations; positions that differ by less are equal
 MAX_NOISE_SHARE = 1e-3  # of the power of the filtered acceleration
 MAX_NOISE_OF_OWN = 5e-3  # of the part of it that the angle does not make up: by as much inertia and gravity come out too small
 MAX_CUTOFF_SHARE = 0.1  # of the sample rate
+MIN_NARROWING = 0.6  # of the cut-off: a band hardly narrower changes more by what the model lacks than by noise
 PASS_BAND_SHARE = 0.4  # of the cut-off: 2/5, the literature's rule
 SPEED_CUTOFF_FACTOR = 4.0  # over the cut-off of the acceleration: reversals must be known to milliseconds
 FILTER_SAMPLES = 20  # samples compared, each side: there the response of the filter is below 1e-9 of its peak
@@ -194,7 +195,8 @@ def motion_of(
         of_own = MAX_NOISE_OF_OWN * _own_share(_low_passed(regular, cutoff, step), step)
         if of_own < MAX_NOISE_SHARE:  # in the full band, in which noise up to the cut-off counts
             wide = widest_cutoff(frequency, power, of_noise, 1.0 / step, highest / PASS_BAND_SHARE, of_own)
-            cutoff = min(cutoff, PASS_BAND_SHARE * wide)
+            narrow = PASS_BAND_SHARE * wide
+            cutoff = narrow if narrow < MIN_NARROWING * cutoff else cutoff
     every = _every(cutoff, step)
     smooth = _low_passed(regular, cutoff, step)
     quick = _low_passed(regular, min(SPEED_CUTOFF_FACTOR * cutoff, 0.4 / step), step)

@@ -101,6 +101,7 @@ def test_a_stribeck_curve_is_measured_near_the_best_four_speeds() -> None:
         assert np.sum(np.abs(np.log(found / place)) < 1.1 * np.log(grid[1] / grid[0])) in (2, 3, 4)
 
 
+@pytest.mark.slow("identification")
 @pytest.mark.parametrize(("gear", "paths"), [(COULOMB, LINE), (STRIBECK, LAW)])
 def test_expected_sigmas_are_the_scatter_of_fits_to_simulated_tables(gear: sw.Gear, paths: list[str]) -> None:
     plan = friction_plan(gear, paths, noise={"friction": 2e-4}, time=1200.0)

@@ -47,7 +47,7 @@ def test_a_log_tells_how_the_gear_gives_way_and_the_gear_has_it(tmp_path: Path) 
         "",
         "twist over torque",
         "between the shafts",
-        "error over a turn of the input",
+        "transmission error over a turn of the input",
     ]
     assert "log.csv, between the shafts" in identify_report(found)
 
