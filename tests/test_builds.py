@@ -31,8 +31,9 @@ class Clone:
 
     def __init__(self, folder: Path) -> None:
         self.root = folder / "clone"
+        generated = "[!_]*.pyi", "_core.pyi"
         apart = shutil.ignore_patterns(
-            ".git", ".venv", "build", "out", "dist", "docs", "tests", "*.pyi", "__pycache__", ".*_cache"
+            ".git", ".venv", "build", "out", "dist", "docs", "tests", *generated, "__pycache__", ".*_cache"
         )
         shutil.copytree(ROOT, self.root, ignore=apart)
         self.packages = make_environment(self.root / ".venv")

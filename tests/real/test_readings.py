@@ -53,7 +53,8 @@ def test_a_joint_is_right_at_the_first_command_or_with_the_options_of_the_questi
 @needs_trials
 def test_revolutions_at_the_output_are_decided_by_what_each_reading_leaves() -> None:
     (result,) = identify("csg-20-100", [TRIALS / "moteus" / "output.csv"]).files
-    assert result.remarks[0].startswith("read as rev, rev/s at the output, which leaves 1.4 % of TORQUE unexplained")
+    said = "read as rev, rev/s at the output, which leaves 1.4 % of TORQUE unexplained"
+    assert any(each.startswith(said) for each in result.remarks)
 
 
 @pytest.mark.slow("identification")

@@ -46,7 +46,7 @@ ARM = {
     "ur10e/ur-20_01_22-joint_5.csv": ("5", {"angle_of_joint_6"}, "block3"),
     "ur10e/ur-20_02_05-20sec_12harm.csv": ("1", {"angle_of_joint_2", "angle_of_joint_6"}, "--joint 1"),
     "ur10e/ur-20_02_19_14harm50secLoad.csv": ("1", {"angle_of_joint_2", "angle_of_joint_6"}, "--joint 1"),
-    "ur10e/ur-20_01_17-ptp_10_points.csv": ("1", {"angle_of_joint_2", "angle_of_joint_6"}, "--joint 1"),
+    "ur10e/ur-20_01_17-ptp_10_points.csv": ("5", {"angle_of_joint_2", "angle_of_joint_6"}, "--joint 5"),  # moves most
     "kinova-gen3/joint_1_trapez.csv": ("1", {"time", "output_angle", "output_speed", "joint_torque", "temperature"}, ""),
     "kinova-gen3/joint_4_trapez.csv": ("4", {"time", "output_angle", "output_speed", "joint_torque", "temperature"}, ""),
     "kinova-gen3/joint_7_trapez.csv": ("7", {"time", "output_angle", "output_speed", "joint_torque", "temperature"}, ""),
