@@ -1,7 +1,7 @@
 """Efficiency over the whole envelope: one gear over speed, load and temperature.
 
 The review of dynamic models asks for one model that holds over speed, torque and temperature. Here mixed lubrication of the
-wave generator and losses of the teeth that grow with the load are in one gear, and a meter tells how much energy reaches the
+wave generator and losses of the teeth that grow with the load are in one gear, and a meter shows how much energy reaches the
 output. Look at how the region of good efficiency moves: cold oil costs efficiency at high speeds; with warm oil dry friction
 lasts up to higher speeds. Numbers of friction are assumed.
 """

@@ -2,7 +2,7 @@
 
 A catalogue gear is loaded at its input, as on the rig of the torsional stiffness article, its output held. Its own friction is
 in the loop, and that of the pulleys, which the file of the rig states, is taken out. Look at the loop: a table of friction,
-measured apart, tells what of its width is friction of the wave generator and what is hysteresis of the flexspline. With real
+measured apart, shows what of its width is friction of the wave generator and what is hysteresis of the flexspline. With real
 photographs only the simulation is left out. The friction, and the hysteresis of the gear on the rig, are assumed.
 """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
@@ -28,8 +29,8 @@ MAX_NAME_WIDTH = 32  # characters; a longer name has a line of its own
 MIN_NOTE_WIDTH = 24  # characters; a note with less room stands below its row
 MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
-DIGITS = 5  # of a number without a standard deviation
-BESIDE = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
+PLAIN_DIGITS = 5  # of a number without a standard deviation
+FIELDS_BESIDE_ROWS = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
 _ATTRIBUTE = re.compile(r"^ {8}(\w[\w, ]*): (.*(?:\n {12}.*)*)", re.MULTILINE)  # of a docstring
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
 
@@ -151,13 +152,13 @@ class Pictured(Presented):
 
     __slots__ = ()
 
+    @abstractmethod
     def plot(self) -> Figure:
         """Return the picture as a figure of matplotlib.
 
         Raises:
             ValueError: there is nothing to draw
         """
-        raise NotImplementedError
 
 
 class Reported:
@@ -198,7 +199,7 @@ def rows_of_fields(result: Any) -> Iterator[Row]:
     units = _units(type(result).__doc__ or "")
     for name in names:
         base = name.removesuffix("_sigma") if name != "sigma" else "value"
-        if name in BESIDE or (base != name and base in names):
+        if name in FIELDS_BESIDE_ROWS or (base != name and base in names):
             continue
         sigma = getattr(result, "sigma" if name == "value" else f"{name}_sigma", nan)
         unit = units.get(name, "")
@@ -315,12 +316,12 @@ def number_text(row: Row) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, tuple):
-        return " to ".join(typeset.number(float(end), DIGITS) for end in value)
+        return " to ".join(typeset.number(float(end), PLAIN_DIGITS) for end in value)
     if value is None or isinstance(value, str):
         return value or "—"
     if isnan(value):
         return "—"
-    return typeset.uncertain(value, row.sigma) if row.sigma >= 0.0 else typeset.number(value, DIGITS)
+    return typeset.uncertain(value, row.sigma) if row.sigma >= 0.0 else typeset.number(value, PLAIN_DIGITS)
 
 
 def in_one_line(rows: Iterable[Row]) -> str:

@@ -16,7 +16,7 @@ from strainwave.presentation import MAX_PRINTED_ROWS, Row, number_text
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# A notebook does not tell a result whether its page is dark: letters take the colour of the page, curves one that both carry.
+# A result does not know whether its page is dark: letters have the colour of the page, curves one that is visible on both.
 COLOURS = {
     "ink": "currentColor", "muted": "#808080", "rule": "rgba(128, 128, 128, 0.35)", "measured": "#3d85c6",
     "model": "#dd6b20", "held-out": "#a06cd5", "earlier": "#a88a1c",

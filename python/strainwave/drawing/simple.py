@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-HEIGHT = 2.8  # inches
+PANEL_HEIGHT = 2.8  # inches
 SIGMA_OF_95_PERCENT = 1.96
 BAR_COLOURS = ("muted", "model")  # of kinds of bars, the last one the strongest
 BAR_HEIGHT, MARGIN_HEIGHT = 0.34, 1.2  # inches
@@ -31,7 +31,7 @@ class Series(NamedTuple):
 
 def curve_figure(title: str, x: Series, y: Series, sigma: Array | None = None) -> Figure:
     """Return the figure of a curve, with its band of 95 % where a standard deviation is known."""
-    with marks.new_figure(HEIGHT, title) as figure:
+    with marks.new_figure(PANEL_HEIGHT, title) as figure:
         axes = figure.subplots()
         if sigma is not None and np.isfinite(sigma).all():
             half = SIGMA_OF_95_PERCENT * sigma
@@ -43,7 +43,7 @@ def curve_figure(title: str, x: Series, y: Series, sigma: Array | None = None) -
 
 def points_figure(title: str, x: Series, y: Series, levels: Mapping[str, float] | None = None) -> Figure:
     """Return the figure of points joined by a line, with level lines by their names."""
-    with marks.new_figure(HEIGHT, title) as figure:
+    with marks.new_figure(PANEL_HEIGHT, title) as figure:
         axes = figure.subplots()
         axes.plot(x.values, y.values, "o-", color=LIGHT["measured"], label=y.name)
         for name, level in (levels or {}).items():
@@ -56,7 +56,7 @@ def points_figure(title: str, x: Series, y: Series, levels: Mapping[str, float] 
 
 def stems_figure(title: str, x: Series, y: Series) -> Figure:
     """Return the figure of stems from zero, as amplitudes over orders."""
-    with marks.new_figure(HEIGHT, title) as figure:
+    with marks.new_figure(PANEL_HEIGHT, title) as figure:
         axes = figure.subplots()
         axes.vlines(x.values, 0.0, y.values, color=LIGHT["measured"])
         axes.plot(x.values, y.values, "o", color=LIGHT["measured"])

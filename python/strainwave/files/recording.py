@@ -21,7 +21,7 @@ from strainwave.files.labels import Label, label_of
 from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
-from strainwave.presentation import DIGITS, Pictured, Row
+from strainwave.presentation import PLAIN_DIGITS, Pictured, Row
 
 if TYPE_CHECKING:
     import pandas
@@ -153,7 +153,7 @@ class Recording(Pictured):
 
     def _rows(self) -> Iterator[Row]:
         for name, values in self.columns.items():
-            mean = typeset.number(float(np.mean(values)), DIGITS)
+            mean = typeset.number(float(np.mean(values)), PLAIN_DIGITS)
             yield Row(name, (float(values.min()), float(values.max())), self.unit(name), note=f"mean {mean}")
 
     def unit(self, name: str) -> str:

@@ -132,7 +132,7 @@ class Effort:
 
     @property
     def given(self) -> dict[str, Any]:
-        """What states this reading, as keyword arguments of `FileMapping`."""
+        """Keyword arguments of `FileMapping` that select this reading."""
         of_side = {"columns": {self.channel: self.column}} if self.side is None else {"side": self.side}
         return {**of_side, "units": {self.column: self.unit}}
 

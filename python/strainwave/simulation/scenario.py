@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import _core, arguments, typeset
 from strainwave.files.recording import Recording
 from strainwave.messages import shortened
-from strainwave.presentation import DIGITS, Pictured, Row, counted
+from strainwave.presentation import PLAIN_DIGITS, Pictured, Row, counted
 from strainwave.simulation.memory import check_instants, room_for
 
 __all__ = [
@@ -259,7 +259,7 @@ class Scenario(Pictured):
 
     def _headline(self) -> str:
         waves = f", {counted(len(self.waves), 'wave')}" if self.waves else ""
-        low, high = (typeset.number(end, DIGITS) for end in self._range)
+        low, high = (typeset.number(end, PLAIN_DIGITS) for end in self._range)
         return f"{self.duration:g} s, {counted(len(self.start), 'piece')}{waves}, {low} to {high}"
 
     @property

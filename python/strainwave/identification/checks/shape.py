@@ -26,7 +26,7 @@ def has_small_shape(check: Check) -> bool:
 
 
 class Judged(NamedTuple):
-    """What the shape of residuals gives: a check, or none for too few samples, and a remark on a small shape that is there."""
+    """Check of the shape of residuals, None for too few samples, and a remark if the shape is significant but small."""
 
     checks: tuple[Check, ...] = ()
     remarks: tuple[str, ...] = ()

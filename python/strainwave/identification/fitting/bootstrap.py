@@ -14,7 +14,7 @@ from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
-from strainwave.presentation import DIGITS, Pictured, Row
+from strainwave.presentation import PLAIN_DIGITS, Pictured, Row
 from strainwave.progress import Progress, by_count
 from strainwave.statistics.residuals import correlation_length
 
@@ -71,7 +71,7 @@ class Bootstrap(ComparedByFields, Pictured):
 
     def _rows(self) -> Iterator[Row]:
         for path, unit, values, sigma in zip(self.paths, self.units, self.values.T, self.sigma.tolist(), strict=True):
-            low, high = (typeset.number(end, DIGITS) for end in self.interval(path))
+            low, high = (typeset.number(end, PLAIN_DIGITS) for end in self.interval(path))
             yield Row(path, float(values.mean()), unit, sigma, f"95 %: {low} to {high}")
 
     def plot(self) -> Figure:

@@ -56,7 +56,7 @@ from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
 
-SLIDING = 4.0  # times the speed about which the sign of friction turns over: its mean over both senses is 0.1 % off from there
+SLIDING_SPEED_FACTOR = 4.0  # of the speed at which friction turns its sign: beyond it the mean over both senses is within 0.1 %
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
 COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
@@ -159,7 +159,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
 def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
     """Return the check of the shape of what a model leaves of a log over angles and speed, and a remark."""
     moved = moving(log)
-    slides = np.abs(log.motion.speed[moved]) > SLIDING * turnover_speed(log.motion.speed)
+    slides = np.abs(log.motion.speed[moved]) > SLIDING_SPEED_FACTOR * turnover_speed(log.motion.speed)
     angle, speed = log.motion.angle[moved][slides], log.motion.speed[moved][slides]
     abscissae = {"the angle of the output": angle / ratio, "the speed": speed}
     if np.ptp(angle) > 2.0 * np.pi:

@@ -23,7 +23,7 @@ from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 
-PARTS = 24  # stretches of a run-down, each with its mean speed and its slope
+STRETCH_COUNT = 24  # stretches of a run-down, each with its mean speed and its slope
 MIN_PARTS, MIN_ROWS_OF_PART = 6, 4
 MIN_SPEED = 0.02  # of the first speed: below, the shaft comes to rest
 MAX_RISE = 0.1  # of the first speed, by which it may rise after its largest: a shaft without a motor only slows down
@@ -95,7 +95,7 @@ def _slopes(time: Array, speed: Array) -> tuple[Array, Array]:
     begin = int(np.argmax(size))
     resting = np.flatnonzero(size[begin:] < MIN_SPEED * size[begin])
     end = begin + int(resting[0]) if len(resting) else len(size)
-    count = min(PARTS, (end - begin) // MIN_ROWS_OF_PART)
+    count = min(STRETCH_COUNT, (end - begin) // MIN_ROWS_OF_PART)
     if count < MIN_PARTS:
         raise ValueError(f"it slows down in {end - begin} rows; {MIN_PARTS * MIN_ROWS_OF_PART} are the least: record faster")
     parts = [np.arange(begin, end)[part] for part in np.array_split(np.arange(end - begin), count)]

@@ -112,7 +112,7 @@ class FileMapping:
 
     @property
     def options(self) -> list[str]:
-        """What a person states, but for signs, as options of a command.
+        """Options of a command for all that a person states, without signs.
 
         >>> FileMapping(columns={"speed": "3"}, constants={"torque_constant": 0.0755}, side="input").options
         ['--side', 'input', '--column', 'speed=3', '--constant', 'torque_constant=0.0755']

@@ -139,7 +139,7 @@ class Picture(ComparedByFields):
 
     @property
     def subject(self) -> Subject:
-        """What an engineer looks for in it: torque over time, friction over speed, twist over torque, error over a turn."""
+        """Pictures of the first screen: torque over time, friction over speed, twist over torque, error over a turn."""
         if self.look == "turn":
             return "error"
         if self.look == "loop":
