@@ -132,7 +132,8 @@ def test_command_writes_a_package_or_names_the_missing_compiler(tmp_path, monkey
     def none():
         raise NoCompilerError("there is no C++20 compiler")
 
-    monkeypatch.setattr(modelica_package, "shared_library", lambda *_: library_of(exported()))
+    library = library_of(exported())
+    monkeypatch.setattr(modelica_package, "shared_library", lambda *_: library)
     words = ["modelica", DRIVE, "--out", str(tmp_path)]
     result = CliRunner().invoke(verb, words)
     assert result.exit_code == 0, result.output
