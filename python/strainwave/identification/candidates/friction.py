@@ -24,9 +24,8 @@ from strainwave.identification.candidates.steady_shapes import (
     with_conditions,
 )
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
-from strainwave.identification.fitting.unknowns import plan
+from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.residuals import chance_of_gain
 from strainwave.statistics.scale import robust_sigma
 

@@ -27,12 +27,14 @@ from strainwave.identification.candidates.motion_model import (
     INPUT,
     MotionModel,
     bristled,
+    sizes_of_waves,
     slope_of,
     with_curved_viscous_part,
     with_delay,
     with_higher_friction_at_low_speed,
     with_loss_under_load,
     with_lower_friction_at_low_speed,
+    with_ripple,
     without,
 )
 from strainwave.identification.candidates.plain import (
@@ -46,10 +48,9 @@ from strainwave.identification.candidates.plain import (
     one_speed,
     stretches,
 )
-from strainwave.identification.candidates.ripple import sizes_of_waves, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
-from strainwave.identification.experiments.stages import series_compliance
+from strainwave.identification.experiments.torsion_loop import series_compliance
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

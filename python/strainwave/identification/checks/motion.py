@@ -15,7 +15,7 @@ from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check

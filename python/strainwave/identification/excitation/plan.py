@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear, arguments, typeset
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
-from strainwave.identification.excitation.candidates import CandidateMeasurement, Limits, Noise, Resolution
-from strainwave.identification.excitation.design import Criterion, best, covariance_of
+from strainwave.identification.excitation.candidates import (
+    CandidateMeasurement,
+    Criterion,
+    Limits,
+    Noise,
+    Resolution,
+    best,
+    covariance_of,
+)
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened

@@ -22,7 +22,7 @@ from strainwave.identification.experiments.experiment import (
     sensible,
     with_step,
 )
-from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
+from strainwave.identification.experiments.friction_table import FRICTIONLESS, ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import MAX_GAP_STEPS, Motion, in_gap, motion_of
 from strainwave.messages import listed
 from strainwave.native import kernels
@@ -342,6 +342,14 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     found = np.zeros((len(paths), len(torque)))
     found[places] = slopes
     return torque, found
+
+
+def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
+    """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
+    ratio = drive.gear.kinematics.ratio
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
+    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=MIN_INERTIA))
+    return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
 def per_torque(drive: Drive, effort: str) -> float:

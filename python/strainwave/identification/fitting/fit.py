@@ -15,15 +15,12 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
-from strainwave.identification.experiments.drive_log import DriveLog
-from strainwave.identification.experiments.driven_log import DrivenLog, driven
+from strainwave.identification.experiments.drive_log import DriveLog, DrivenLog, driven
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
-from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, Prior, plan
+from strainwave.identification.fitting.problem import LOSSES, FitRecord, LossName, Problem, Squared, Weights
+from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.simulation.resolution import warn_of_bristles

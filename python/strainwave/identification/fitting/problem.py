@@ -1,24 +1,22 @@
-"""Least squares on free parameters of a model and unknowns of measurements, in numbers scaled to their size."""
+"""Least squares on free parameters of a model and unknowns of measurements."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
-from strainwave.identification.fitting.waves import Waves
+from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, ParameterLink, Unknown
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
@@ -27,6 +25,8 @@ MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
+LossName = Literal["linear", "soft_l1"]
+AMPLITUDES = ("amplitude", "torque")  # in a name in place of "phase"
 
 
 @dataclass(frozen=True)
@@ -396,3 +396,120 @@ class Problem:
             for (path, unit, before, end), value, s, f in zip(described, values, sigma, freedom[order], strict=True)
         )
         return estimates, covariance
+
+
+# ---- Loss functions --------------------------------------------------------------------------------------------------
+
+
+class Loss(Protocol):
+    """Cost of residuals, in units of their standard deviation; a fit minimises half of `cost(residual**2)`."""
+
+    def sigma(self, residual: Array) -> Array:
+        """Return the standard deviation of the noise, shape (channels, 1), from residuals, shape (channels, n)."""
+        ...
+
+    def cost(self, squares: Array) -> Array:
+        """Return the cost over the square of a residual, and its first and second derivative, shape (3, n)."""
+        ...
+
+
+class Squared:
+    """The square itself: best where noise is normal."""
+
+    def sigma(self, residual: Array) -> Array:
+        return np.asarray(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)))
+
+    def cost(self, squares: Array) -> Array:
+        return np.stack((squares, np.ones_like(squares), np.zeros_like(squares)))
+
+
+class SoftL1:
+    """Like the square for residuals within their standard deviation, like the absolute value far beyond: outliers pull little.
+
+    Cost 2 (sqrt(1 + z) - 1): Charbonnier et al., IEEE Trans. Image Process. 6 (1997) 298-311. The standard deviation is that of
+    normal noise with the same median absolute value, which outliers hardly change (Hampel 1974).
+    """
+
+    def sigma(self, residual: Array) -> Array:
+        return robust_sigma(residual, axis=1)[:, np.newaxis]
+
+    def cost(self, squares: Array) -> Array:
+        root = np.sqrt(1.0 + squares)
+        return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
+
+
+LOSSES: dict[LossName, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
+
+
+def slope(loss: Loss, residual: Array) -> Array:
+    """Return the derivative of half the cost by the residual."""
+    return np.asarray(residual * loss.cost(residual**2)[1])
+
+
+def curvature(loss: Loss, residual: Array) -> Array:
+    """Return the second derivative of half the cost by the residual."""
+    _, first, second = loss.cost(residual**2)
+    return np.asarray(first + 2.0 * residual**2 * second)
+
+
+# ---- Waves, as a solver moves them -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """The waves among the unknowns of a fit.
+
+    Attributes:
+        amplitude, phase: places of the unknowns of each wave, shape (waves,)
+        turned: phase at the start of the fit, from which the imaginary part counts [rad], shape (waves,)
+    """
+
+    amplitude: NDArray[np.intp]
+    phase: NDArray[np.intp]
+    turned: Array
+
+    @classmethod
+    def of(cls, unknowns: Sequence[Unknown], start: Array, free: NDArray[np.intp]) -> Waves:
+        """Return the waves whose amplitude and phase are both free and not limited but for the sign of the amplitude."""
+        places = {unknowns[place].path: place for place in free.tolist() if place < len(unknowns)}
+        pairs = [
+            (places[path], phase)
+            for name, phase in places.items() if "phase" in name
+            for path in (name.replace("phase", amplitude) for amplitude in AMPLITUDES) if path in places
+        ]  # fmt: skip
+        pairs = [
+            (own, phase) for own, phase in pairs
+            if start[own] > 0.0 and np.isinf([*_limits(unknowns[phase]), unknowns[own].high]).all()
+        ]  # fmt: skip
+        amplitude, phase = np.array(pairs, np.intp).reshape(-1, 2).T
+        return cls(amplitude, phase, start[phase])
+
+    def parts(self, x: Array) -> Array:
+        """Return unknowns with real and imaginary part in the places of amplitude and phase."""
+        found, wave = x.copy(), x[self.amplitude] * np.exp(1j * (x[self.phase] - self.turned))
+        found[self.amplitude], found[self.phase] = wave.real, wave.imag
+        return found
+
+    def unknowns(self, parts: Array) -> Array:
+        """Return the unknowns of parts; a phase is within half a turn of that at the start."""
+        found, wave = parts.copy(), parts[self.amplitude] + 1j * parts[self.phase]
+        found[self.amplitude], found[self.phase] = np.abs(wave), self.turned + np.angle(wave)
+        return found
+
+    def slopes(self, rows: Array, x: Array) -> Array:
+        """Return derivatives by the parts, of those by the unknowns at x, shape (samples, unknowns)."""
+        found, angle = rows.copy(), x[self.phase] - self.turned
+        along, across = rows[:, self.amplitude], rows[:, self.phase] / np.maximum(x[self.amplitude], 1e-300)
+        found[:, self.amplitude] = along * np.cos(angle) - across * np.sin(angle)
+        found[:, self.phase] = along * np.sin(angle) + across * np.cos(angle)
+        return found
+
+    def limits(self, ends: Array) -> Array:
+        """Return lowest and highest values of the parts, of those of the unknowns, shape (unknowns, 2)."""
+        found = ends.copy()
+        found[self.amplitude], found[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
+        return found
+
+
+def _limits(unknown: Unknown) -> tuple[float, float]:
+    return unknown.low, unknown.high
