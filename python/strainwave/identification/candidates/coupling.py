@@ -109,7 +109,9 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
     """Yield the log with terms of the kinetic energy, chosen with a loss under load, which they can imitate, and without."""
     own, terms = log.motion, list(arm.terms())
     columns = _columns(own, arm, terms)
-    lossy = np.column_stack([base, _loss(torque, base, known) * np.sign(own.speed[own.rows])])
+    rigid = np.array([*range(END_OF_RIGID), *range(END_OF_FRICTION, base.shape[1])])
+    size = np.abs(base[:, rigid] @ solved(base[known], torque[known])[rigid])  # of what a gear loses a share
+    lossy = np.column_stack([base, size * np.sign(own.speed[own.rows])])
     begin, end = log.time[known][[0, -1]]
     block = np.clip(TIME_BLOCKS * (log.time - begin) / (end - begin), 0.0, TIME_BLOCKS - 1.0).astype(int)
     weights = np.array([term.weight(arm.joint) for term in terms])
@@ -120,12 +122,6 @@ def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: R
         selected = {terms[place].name: terms[place].torque(arm) for place in places}
         if selected:
             yield _with_regressors(log, selected)
-
-
-def _loss(torque: Array, base: Array, known: Rows) -> Array:
-    """Return the size of the torque by inertia and gravity, of which a gear loses a share, shape (n,)."""
-    rigid = np.array([*range(END_OF_RIGID), *range(END_OF_FRICTION, base.shape[1])])
-    return np.asarray(np.abs(base[:, rigid] @ solved(base[known], torque[known])[rigid]))
 
 
 def _with_regressors(log: MotionLog, series: Mapping[str, Array]) -> MotionLog:

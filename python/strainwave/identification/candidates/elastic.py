@@ -21,13 +21,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, hysteresis, kinematic_error, loads, stiffness
+from strainwave import Drive, _core, kinematic_error, loads, stiffness
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.candidates.torsion.candidate import merged
-from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs
+from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs, unit_traces
 from strainwave.identification.candidates.torsion.springs import (
     CUBIC,
     LINEAR,
@@ -346,21 +346,19 @@ def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
 
 
 def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel | None:
-    """Return the model fitted from a start; None if it leaves what its law allows."""
+    """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
+    free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
-        return _tried(log, drive, scale, reach)
+        problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+        fitted: Any = problem.records[0].model(x)
+        ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
         return None
-
-
-def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel:
-    free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
-    problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
-    fitted: Any = problem.records[0].model(x)
     if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
-        raise ValueError("the bend of the spring lies beyond the torque of the log")
-    ((predicted, _),) = problem.predict(x)
-    return _TriedModel(_name(drive), free, fitted, (log.measured - predicted)[0, ~training])
+        return None
+    count = len(fitted.gear.hysteresis.stiffness)
+    name = f"{fitted.gear.stiffness.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
+    return _TriedModel(name, free, fitted, (log.measured - predicted)[0, ~training])
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
@@ -386,13 +384,6 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     for path, *_ in _core.parameters(drive):
         if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
             yield path
-
-
-def _name(drive: Drive) -> str:
-    """Return the model of the gear in words."""
-    gear: Any = drive.gear
-    spring, count = gear.stiffness, len(gear.hysteresis.stiffness)
-    return f"{spring.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
 
 
 # ---- Initial values by a convex problem ------------------------------------------------------------------------------
@@ -443,7 +434,7 @@ def elastic_starts(
     rows = np.flatnonzero(used)
     rows = rows[:: -(-len(rows) // MAX_ROWS)]
     training = blocks[rows]
-    memory = _slips(twist, half)
+    memory = np.column_stack(unit_traces(twist, half * SLIPS))
     found = []
     for count in range(MAX_ELEMENTS + 1):
         elements = _elements(memory[rows], half, count)
@@ -451,7 +442,9 @@ def elastic_starts(
             libraries = [elements, spring.library(twist[rows], half, drive.gear)]
             try:
                 (answer, *_) = solve(
-                    needed[rows][training], [_of_rows(each, training) for each in libraries], always[rows][training]
+                    needed[rows][training],
+                    [replace(each, torques=each.torques[training]) for each in libraries],
+                    always[rows][training],
                 )
             except ValueError:
                 continue
@@ -491,12 +484,6 @@ def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array],
 SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
 
 
-def _slips(twist: Array, half: float) -> Array:
-    """Return the torques of elements of unit stiffness along a twist, shape (m, slips)."""
-    traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(twist) for slip in (half * SLIPS).tolist()]
-    return np.column_stack(traces)
-
-
 def _elements(torques: Array, half: float, count: int) -> Library:
     """Return the library of a count of elements that slip at different twists."""
 
@@ -509,10 +496,6 @@ def _elements(torques: Array, half: float, count: int) -> Library:
         return Choice(places, put)
 
     return Library(torques, tuple(choice(places) for places in combinations(range(len(SLIPS)), count)))
-
-
-def _of_rows(library: Library, rows: Rows) -> Library:
-    return Library(library.torques[rows], library.choices)
 
 
 def _predicted(answer: Answer, libraries: list[Library], always: Array) -> Array:

@@ -282,7 +282,9 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
     def as_good(candidate: FrictionCandidate) -> bool:
         worse = _squares(candidate) - squares
         within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
-        return within or (candidate.parameters < best.parameters and _chance(candidate, best) > MAX_CHANCE)
+        more = best.parameters - candidate.parameters
+        before, left = candidate.fit.residuals[0], best.fit.residuals[0]
+        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
 
@@ -314,11 +316,6 @@ def _widened_by_choice(best: FrictionCandidate, *others: FrictionCandidate) -> F
 def _squares(candidate: FrictionCandidate) -> Array:
     squares: Array = (candidate.fit.experiment.measured[0] - candidate.held_out) ** 2
     return squares
-
-
-def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
-    more = candidate.parameters - simplest.parameters
-    return by_chance(simplest.fit.residuals[0], candidate.fit.residuals[0], more, candidate.parameters) if more > 0 else 1.0
 
 
 def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:

@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, friction, loads
+from strainwave import Drive, friction, loads
 from strainwave.identification.candidates.motion_candidate import (
+    GRAVITY,
     MAX_ERROR,
     MotionCandidate,
     candidate_of,
@@ -26,14 +28,12 @@ from strainwave.identification.candidates.motion_model import (
     FOLLOWS,
     INPUT,
     MotionModel,
-    bristled,
     sizes_of_waves,
     slope_of,
     with_curved_viscous_part,
     with_delay,
-    with_higher_friction_at_low_speed,
+    with_friction_at_low_speed,
     with_loss_under_load,
-    with_lower_friction_at_low_speed,
     with_ripple,
     without,
 )
@@ -56,10 +56,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
-GRAVITY = ("load.gravity_torque", "load.gravity_phase")
 AS_IN_SET = "split as in the start set"
-BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
-NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
@@ -96,9 +93,11 @@ def fit_motion(
     search = _Search(drive, held_out, {**(priors or {}), **of_split})
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
     delay = best_delay(logs[0], drive)
-    late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
+    late = with_delay(best.model, delay) if delay else None  # alone, and with each other part, as each may hide the other
+    delayed = [] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
+    found = [each for model in delayed if (each := search.tried(model)) is not None]
     best = _completed(search, best)
-    if found := [each for each in late if each is not None]:
+    if found:
         start = found[0]  # a delay alone, unless a part beside it explains more
         for each in found[1:]:
             start = each if each.explains_more_than(start) else start
@@ -109,12 +108,6 @@ def fit_motion(
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
     return (best, *others)
-
-
-def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
-    """Return a model with a delay alone, and with a delay and each other part, as each may hide the other."""
-    late = with_delay(model, delay)
-    return [late] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
 
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
@@ -138,8 +131,8 @@ def _waving(waving: MotionCandidate | None, plain: MotionCandidate) -> MotionCan
 
 def _with_parts(search: _Search, best: MotionCandidate) -> MotionCandidate:
     """Return the model without and with parts, those over the angle last."""
-    for less in (_without_gravity, _without_inertia, _without_viscous):
-        best = search.reduced(best, less(best))
+    for part in ("gravity", "inertia", "viscous part"):
+        best = search.reduced(best, _without(best, part))
     best = search.rippled(search.grown(best, list(PARTS)))
     return _with(best, search.tried(_with_own_split(best.model)))  # which a delay hides
 
@@ -177,7 +170,7 @@ class _Search:
             return None
         if not _is_sensible(found):
             return None
-        found = _with(found, _with_bristles(found))
+        found = _with(found, found.with_bristles())
         self.every.append(found)
         return found
 
@@ -222,7 +215,7 @@ class _Search:
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
+        bristled, limit = best.with_bristles(), MAX_RELATIVE_ERROR * best.errors[-1]
         if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
             return bristled
         self.tried(model)
@@ -262,49 +255,36 @@ def prior_of_viscous(law: Any, speed: float) -> tuple[float, float]:
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
 
 
-def _is_small(best: MotionCandidate, path: str, unit: Array) -> bool:
-    """True if the model may do without a number that nobody gave: it makes little of the effort, `unit` for one unit of it."""
-    value = next((value for name, value, *_ in _core.parameters(best.model.drive) if name == path), 0.0)
-    scale = per_torque(best.model.drive, best.log.effort)
-    is_free = path in best.model.free and path not in best.priors
-    return is_free and float(np.std(scale * value * unit)) < MAX_SMALL_PART * best.error
+def _without(best: MotionCandidate, part: Literal["gravity", "inertia", "viscous part"]) -> MotionModel | None:
+    """Return the model without a part, if nobody gave its number and the number makes little of the effort.
 
-
-def _without_gravity(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint whose axis is upright."""
-    model, ratio = best.model, best.model.drive.gear.kinematics.ratio
-    if not _is_small(best, "load.gravity_torque", np.sin(best.log.motion.angle / ratio) / ratio):
+    That is gravity of a joint whose axis is upright, inertia of one that hardly accelerates, and the viscous part of one that
+    moves at one speed, where Coulomb's friction stands for all of it.
+    """
+    model, motion, ratio = best.model, best.log.motion, best.model.drive.gear.kinematics.ratio
+    path, torque = {  # of a unit of the number
+        "gravity": ("load.gravity_torque", np.sin(motion.angle / ratio) / ratio),
+        "inertia": ("load.inertia", motion.acceleration / ratio**2),
+        "viscous part": (model.path_of("viscous"), motion.speed),
+    }[part]
+    if path not in model.free or path in best.priors:
         return None
-    load = loads.Inertia(inertia=inertia_of(model.drive))
-    return replace(
-        model, name=f"{model.name}, no gravity", drive=model.drive.replace(load=load), free=without(model.free, "gravity")
-    )
-
-
-def _without_inertia(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint that hardly accelerates."""
-    model = best.model
-    if not _is_small(best, "load.inertia", best.log.motion.acceleration / model.drive.gear.kinematics.ratio**2):
+    scale = per_torque(model.drive, best.log.effort) * best.values[model.free.index(path)]
+    if not float(np.std(scale * torque)) < MAX_SMALL_PART * best.error:
         return None
-    drive = model.drive.replace({"load.inertia": MIN_INERTIA})
-    return replace(model, name=f"{model.name}, no inertia", drive=drive, free=without(model.free, "inertia"))
-
-
-def _without_viscous(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint that moves at one speed, where Coulomb's friction stands for all of it."""
-    model = best.model
-    if not _is_small(best, model.path_of("viscous"), best.log.motion.speed):
-        return None
-    drive = model.drive.replace({model.path_of("viscous"): 0.0})
-    return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=without(model.free, "viscous"))
+    if part == "gravity":
+        drive = model.drive.replace(load=loads.Inertia(inertia=inertia_of(model.drive)))
+    else:
+        drive = model.drive.replace({path: MIN_INERTIA if part == "inertia" else 0.0})
+    return replace(model, name=f"{model.name}, no {part}", drive=drive, free=without(model.free, part.split()[0]))
 
 
 # ---- Parts that may be added -------------------------------------------------------------------------------------------
 
 Part = Callable[[MotionModel], MotionModel | None]
 PARTS: tuple[Part, ...] = (
-    with_delay, with_curved_viscous_part, with_higher_friction_at_low_speed, with_lower_friction_at_low_speed,
-    with_loss_under_load,
+    with_delay, with_curved_viscous_part, partial(with_friction_at_low_speed, share=1.3),
+    partial(with_friction_at_low_speed, share=0.7), with_loss_under_load,
 )  # fmt: skip
 
 
@@ -327,20 +307,6 @@ def _with(candidate: MotionCandidate, more: MotionCandidate | None) -> MotionCan
     return more if more is not None and more.is_better_than(candidate) else candidate
 
 
-def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
-    """Return the same with bristles, of the bend that explains most; None if its law of friction has none."""
-    drive, last = best.model.drive, best.folds[-1]
-    if bristled(drive, BENDS[0]) is drive or bristled(last.drive, BENDS[0]) is last.drive:
-        return None
-    rows = moving(best.log) & ~last.stretch  # the last stretch takes no part
-
-    def error(bend: float) -> float:
-        return float(np.mean(best.log.residual(bristled(last.drive, bend), last.nuisances)[rows] ** 2))
-
-    coarse = min(BENDS.tolist(), key=error)
-    return replace(best, bend=min((coarse * NEAR_BENDS).tolist(), key=error)).predicted_anew()
-
-
 # ---- Fit -----------------------------------------------------------------------------------------------------------------
 
 
@@ -350,16 +316,15 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
     coulomb = max(plain.coulomb, least)
     law = friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=max(plain.viscous, 0.0))
     drive = drive.replace(gear=drive.gear.replace(friction_input=law, friction_mesh=FRICTIONLESS))
-    total = max(plain.inertia, 1e-9)
+    total, carried = max(plain.inertia, 1e-9), inertia_of(drive)
     if inertia == "load.inertia":
         rotor = drive.motor.inertia + drive.gear.input_inertia
         carried = max(total - rotor, MIN_INERTIA_SHARE * total) * ratio**2
-        load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
-        return drive.replace(load=load), [inertia, *GRAVITY]
-    rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
-    moved = drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total))
-    load = loads.Pendulum(inertia=inertia_of(drive), gravity_torque=plain.gravity, gravity_phase=plain.phase)
-    return drive.replace(motor=moved, load=load), [inertia, *GRAVITY]
+    else:
+        rest = total - drive.gear.input_inertia - carried / ratio**2
+        drive = drive.replace(motor=drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total)))
+    load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
+    return drive.replace(load=load), [inertia, *GRAVITY]
 
 
 def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:

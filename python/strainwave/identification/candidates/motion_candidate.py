@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,15 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.motion_model import INPUT, LOSSES, MotionModel, bristled, by_full_band, slope_of
+from strainwave.identification.candidates.motion_model import (
+    INPUT,
+    LOSSES,
+    MotionModel,
+    best_bend,
+    bristled,
+    by_full_band,
+    slope_of,
+)
 from strainwave.identification.candidates.plain import (
     MAX_RELATIVE_ERROR,
     MIN_SLIDING_SPEED,
@@ -125,9 +132,16 @@ class MotionCandidate(ComparedByFields):
         """Return measured less predicted effort at every sample, shape (m,)."""
         return self.log.residual(self.predicting(drive), nuisances)
 
-    def predicted_anew(self) -> MotionCandidate:
-        """Return the same, with the residuals of what it predicts."""
-        return replace(self, folds=tuple(replace(each, residual=self.left(each.drive, each.nuisances)) for each in self.folds))
+    def with_bristles(self) -> MotionCandidate | None:
+        """Return the same with bristles of the best bend, which moves no estimate; None if its law of friction has none."""
+        last, drive = self.folds[-1], self.model.drive
+        rows = moving(self.log) & ~last.stretch  # the last stretch takes no part
+        bend = None if bristled(drive, 1.0) is drive else best_bend(self.log, last.drive, last.nuisances, rows)
+        if bend is None:
+            return None
+        bent = replace(self, bend=bend)
+        folds = (replace(each, residual=bent.left(each.drive, each.nuisances)) for each in self.folds)
+        return replace(bent, folds=tuple(folds))
 
     @cached_property
     def residuals(self) -> list[Array]:
@@ -251,16 +265,11 @@ def without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequenc
         there = x.copy()
         room = ((low - x) * size)[linear], ((high - x) * size)[linear]
         there[linear] += _bounded(system, np.concatenate([left[~out], noise * (right - before @ x)]), *room) / size[linear]
-        if gravity:
-            there[gravity] = _turned(x[gravity], there[gravity])
+        if gravity:  # a linear step is exact in its sine and cosine
+            (amplitude, phase), (step, turn) = x[gravity], there[gravity] - x[gravity]
+            moved = complex(amplitude + step, amplitude * turn)
+            there[gravity] = abs(moved), phase + np.angle(moved)
         yield there
-
-
-def _turned(before: Array, after: Array) -> Array:
-    """Return amplitude and phase of a gravity after a linear step, which is exact in its sine and cosine."""
-    step, turn = after - before
-    moved = complex(before[0] + step, before[0] * turn)
-    return np.array([abs(moved), before[1] + np.angle(moved)])
 
 
 def _bounded(system: Array, right: Array, low: Array, high: Array) -> Array:
@@ -296,7 +305,7 @@ def confirmed(
         tried.append((each, held_out, predicted))
         if not held_out.share_of_plain > held_out.max_share_of_plain and held_out.relative < 1.0:
             return tried[-1]
-    return min(tried, key=lambda found: found[1].error)
+    return min(tried, key=lambda refitted: refitted[1].error)
 
 
 def beats_by_chance(left: Sequence[Array], of_model: Sequence[Array]) -> bool:
@@ -314,11 +323,11 @@ def refit(best: MotionCandidate) -> tuple[HeldOut, Recording]:
     log, last = best.log, best.folds[-1].stretch
     (waves,) = by_full_band(best.model, [~last])
     best = replace(best, priors={**best.priors, **waves})
-    found = best.fitted_to(~last[log.motion.rows])
-    residual = best.left(found.model, nuisances_of(found))
+    refitted = best.fitted_to(~last[log.motion.rows])
+    residual = best.left(refitted.model, nuisances_of(refitted))
     left, rows = residual[last], moving(log)
     before = float(np.mean(log.recorded[rows & ~last]))
-    (part,) = found.parts
+    (part,) = refitted.parts
     spread = float(np.std(log.measured[0, ~part.training])) if not part.training.all() else 0.0
     in_band = float(part.rms(held_out=True)[0]) / spread if spread > 0.0 else np.nan
     held_out = HeldOut(
@@ -351,18 +360,12 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
         slow[:] = False
     values = np.array([x, *without_rows(problem, x, [slow, *blocks], ())]).T
     numbers = {plain(each.path): own for each, own in zip(problem.plan.unknowns, values, strict=False)}
+    if speed_of_all := best.model.one_speed:
+        numbers[STEADY] = numbers[f"{INPUT}coulomb"] + speed_of_all * numbers.get(f"{INPUT}viscous", np.zeros(1))
     return {
         path: float(np.hypot(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(own[2:])), own[1] - own[0]))
-        for path, own in with_sum(numbers, best.model.one_speed).items()
+        for path, own in numbers.items()
     }
-
-
-def with_sum(numbers: Mapping[str, Any], speed: float) -> dict[str, Any]:
-    """Return numbers by their paths with the friction at the one speed of a record [rad/s], if it has one."""
-    whole = dict(numbers)
-    if speed:
-        whole[STEADY] = whole[f"{INPUT}coulomb"] + speed * whole.get(f"{INPUT}viscous", 0.0)
-    return whole
 
 
 def spread_by_models(best: MotionCandidate, others: Sequence[MotionCandidate]) -> dict[str, float]:

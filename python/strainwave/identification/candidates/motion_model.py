@@ -28,6 +28,8 @@ LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 WITHIN = f"{INPUT}law."  # where friction stands that varies over the angle
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
+BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
+NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -152,18 +154,8 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
     )
 
 
-def with_higher_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """Return the model with friction that falls with the speed at first; the fit may make it rise."""
-    return _with_another_friction_at_low_speed(model, 1.3)
-
-
-def with_lower_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """Return the model with friction that rises with the speed at first; the fit may make it fall."""
-    return _with_another_friction_at_low_speed(model, 0.7)
-
-
-def _with_another_friction_at_low_speed(model: MotionModel, share: float) -> MotionModel | None:
-    """Return the model with a Stribeck torque whose fit starts with a share of Coulomb's torque at rest [1]."""
+def with_friction_at_low_speed(model: MotionModel, share: float) -> MotionModel | None:
+    """Return the model with a Stribeck torque that starts with a share of Coulomb's torque at rest [1]; a fit may turn it."""
     law = model.law
     if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
@@ -202,6 +194,18 @@ def bristled(drive: Drive, bend: float) -> Drive:
         bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
     )  # fmt: skip
     return with_sliding(drive, bristle)
+
+
+def best_bend(log: MotionLog, drive: Drive, nuisances: Array, rows: Rows) -> float | None:
+    """Return the bend of bristles that explains most of some samples [rad]; None if the law of friction has no bristles."""
+    if bristled(drive, BENDS[0]) is drive:
+        return None
+
+    def error(bend: float) -> float:
+        return float(np.mean(log.residual(bristled(drive, bend), nuisances)[rows] ** 2))
+
+    coarse = min(BENDS.tolist(), key=error)
+    return float(min((coarse * NEAR_BENDS).tolist(), key=error))
 
 
 # ---- Waves over the angle --------------------------------------------------------------------------------------------
@@ -260,15 +264,14 @@ def by_full_band(model: MotionModel, trainings: Sequence[Rows]) -> list[dict[str
     for rows in (training[whole.log.motion.rows] for training in trainings):
         step = linear_fit(white[rows, :-1], white[rows, -1])
         determined.append({
-            path: (numbers[path] + change, float(np.hypot(sigma, _bias_in_full_band(path, numbers[path]))))
+            path: (
+                numbers[path] + change,
+                float(np.hypot(sigma, BIAS_IN_FULL_BAND * (1.0 if "phase" in path else numbers[path]))),
+            )
             for path, change, sigma in zip(paths, step.values.tolist(), step.sigma.tolist(), strict=False)
             if path in model.of_full_band and np.isfinite(sigma)
         })  # fmt: skip
     return determined
-
-
-def _bias_in_full_band(path: str, value: float) -> float:
-    return BIAS_IN_FULL_BAND * (1.0 if "phase" in path else value)
 
 
 def is_one_wave(log: MotionLog) -> bool:

@@ -108,14 +108,6 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
     )  # fmt: skip
 
 
-def inertia_with_sigma(log: MotionLog, drive: Drive) -> tuple[float, float]:
-    """Return the inertia of all that turns at the input by plain least squares, and its standard deviation [kg.m2]."""
-    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    every = max(int(rows.sum()) // MAX_ROWS_OF_SIGMA, 1)
-    found = linear_fit(columns[rows][::every], torque[rows][::every])
-    return float(found.values[0]), float(found.sigma[0])
-
-
 def one_speed(log: MotionLog) -> float:
     """Return the size of the speed of the input if a log has one only, so that friction has no shape over it; else 0 [rad/s].
 
@@ -257,7 +249,10 @@ def torque_place(log: MotionLog, drive: Drive, motor_given: bool = False) -> Tor
             a guess all the same
     """
     ratio, motor, gear = drive.gear.kinematics.ratio, drive.motor.inertia, drive.gear.input_inertia
-    inertia, sigma = inertia_with_sigma(log, drive)
+    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
+    every = max(int(rows.sum()) // MAX_ROWS_OF_SIGMA, 1)
+    by_regression = linear_fit(columns[rows][::every], torque[rows][::every])
+    inertia, sigma = float(by_regression.values[0]), float(by_regression.sigma[0])
     rotor, total = motor + gear, max(inertia + SIGNIFICANCE_SIGMA * sigma, 0.0)  # no more than that turns
     sizes = f"all that turns has {inertia * ratio**2:.3g} kg·m² at the output, the rotor {rotor * ratio**2:.3g} kg·m²"
     if motor_given:
@@ -269,7 +264,9 @@ def torque_place(log: MotionLog, drive: Drive, motor_given: bool = False) -> Tor
             remark=f"{sizes}: that of the start set's wave generator is too large; the load's is not separable from it",
         )  # fmt: skip
     if log.effort == "joint_torque":
-        share = _friction_share(fit_plain(log, drive), log, drive)
+        plain, speed = fit_plain(log, drive), float(np.median(np.abs(log.motion.speed[moving(log)])))
+        before = float(drive.gear.friction_input.steady(speed))
+        share = max(plain.coulomb + plain.viscous * speed, 0.0) / before if before > 0.0 else 1.0
         if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:
             why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
             behind = _with_rotor(drive, NO_ROTOR, 0.0)
@@ -303,10 +300,3 @@ def _with_rotor(drive: Drive, motor: float, gear: float) -> Drive:
 def frictionless(drive: Drive) -> Drive:
     """Return the drive without friction at input and mesh, which a torque behind the gear does not contain."""
     return drive.replace(gear=drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS))
-
-
-def _friction_share(plain: Plain, log: MotionLog, drive: Drive) -> float:
-    """Return the friction of a log over that of the drive, at the median speed."""
-    speed = float(np.median(np.abs(log.motion.speed[moving(log)])))
-    before = float(drive.gear.friction_input.steady(speed))
-    return max(plain.coulomb + plain.viscous * speed, 0.0) / before if before > 0.0 else 1.0

@@ -18,6 +18,7 @@ from strainwave.analysis.branches import thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance, dissipating
+from strainwave.identification.candidates.torsion.dissipation import unit_traces
 from strainwave.identification.experiments.experiment import changing, sensible
 from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.statistics.covariance import covariance_of
@@ -140,7 +141,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
         raise ValueError(
             f"{begun.sum()} samples behind the first reversal do not determine a presliding loop; record it more densely"
         )
-    tried = [_candidate("bristle", _bristle(loop), _bristle_start(loop), loop, begun, branch)]
+    tried = [_candidate("bristle", *_bristle(loop), loop, begun, branch)]
     for count in range(1, elements + 1):
         name = f"{count} Maxwell element{'s' if count > 1 else ''}"
         tried.append(_candidate(name, _elements(loop), _elements_start(loop, begun, count), loop, begun, branch))
@@ -202,7 +203,10 @@ def breakaway_torque(ramps: Sequence[BreakawayPoint]) -> BreakawayTorque:
 Predict = Callable[[Array], Array]  # torque along the loop from the numbers of a model, its zero and its beginning
 
 
-def _bristle(loop: PreslidingLoop) -> Predict:
+def _bristle(loop: PreslidingLoop) -> tuple[Predict, Array]:
+    """Return the prediction of a bristle, and its initial values."""
+    half, middle = 0.5 * float(np.ptp(loop.torque)), 0.5 * float(loop.torque.max() + loop.torque.min())
+    behind = loop.angle[loop.turns[0]] - loop.angle[loop.turns[1]]
     first = loop.turns[0]
     ends = [first, *(turn for turn in loop.turns if turn > first), len(loop.angle) - 1]
 
@@ -217,13 +221,7 @@ def _bristle(loop: PreslidingLoop) -> Predict:
         torque += zero
         return torque
 
-    return predict
-
-
-def _bristle_start(loop: PreslidingLoop) -> Array:
-    half, middle = 0.5 * float(np.ptp(loop.torque)), 0.5 * float(loop.torque.max() + loop.torque.min())
-    behind = loop.angle[loop.turns[0]] - loop.angle[loop.turns[1]]
-    return np.array([4.0 * half / abs(behind), half, middle, np.sign(behind) * half])
+    return predict, np.array([4.0 * half / abs(behind), half, middle, np.sign(behind) * half])
 
 
 def _elements(loop: PreslidingLoop) -> Predict:
@@ -243,8 +241,7 @@ def _elements_start(loop: PreslidingLoop, begun: NDArray[np.bool_], count: int) 
     largest = 0.5 * float(np.max(np.abs(np.diff(loop.angle[[0, *loop.turns, -1]]))))
     reach = np.geomspace(0.01, 1.0, GRID_SIZE) * largest
     one = np.ones(len(loop.angle))
-    bent = [np.asarray(hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[float(each)]).trace(loop.angle)) for each in reach]
-    weights, _ = nnls(np.stack([*bent, one, -one], axis=1)[begun], loop.torque[begun])
+    weights, _ = nnls(np.stack([*unit_traces(loop.angle, reach), one, -one], axis=1)[begun], loop.torque[begun])
     groups = [[k, k * float(r)] for k, r in zip(weights[:-2].tolist(), reach, strict=True) if k > 0.0]
     if not groups:
         groups = [[0.5 * float(np.ptp(loop.torque)) / largest, 0.5 * float(np.ptp(loop.torque))]]
@@ -296,12 +293,10 @@ def _solved(predict: Predict, start: Array, torque: Array, chosen: NDArray[np.bo
     low = np.where(np.arange(len(start)) < positive, 1e-6 * np.abs(start), -np.inf)
 
     def residuals(x: Array) -> Array:
-        left: Array = (predict(x) - torque)[chosen]
-        return left
+        return np.asarray((predict(x) - torque)[chosen])
 
     def jacobian(x: Array) -> Array:
-        slopes: Array = _slopes(predict, x)[chosen]
-        return slopes
+        return np.asarray(_slopes(predict, x)[chosen])
 
     solution = least_squares(
         residuals,
@@ -404,14 +399,18 @@ def breakaways(recording: Recording) -> list[BreakawayPoint]:
     """
     check_recording("recording", recording)
     time, torque, angle = recording.time, sensible(recording, "torque", "N.m"), sensible(recording, "angle", "rad")
-    threshold = _smallest_motion(angle)
-    found = [each for ramp in _ramps(torque) if (each := _broken(time[ramp], torque[ramp], angle[ramp], threshold)) is not None]
-    if not found:
+    steps = np.abs(np.diff(angle))
+    of_noise, of_encoder = MIN_MOTION_SIGMA * noise_sigma(angle), 2.0 * float(steps[steps > 0.0].min(initial=np.inf))
+    if np.mean(steps == 0.0) > 0.2 and np.isfinite(of_encoder):  # an encoder that stands still repeats itself
+        of_noise = max(of_noise, of_encoder)
+    smallest = max(of_noise, 1e-12)  # rad: the smallest motion
+    points = [each for ramp in _ramps(torque) if (each := _broken(time[ramp], torque[ramp], angle[ramp], smallest)) is not None]
+    if not points:
         raise ValueError(
             "no ramp of torque is followed by a motion: raise the torque slowly from zero until the shaft turns, let it come "
             "to rest, and repeat; columns are time, torque and angle"
         )
-    return found
+    return points
 
 
 def one_way(path: Array, turns: list[int]) -> Array:
@@ -430,14 +429,6 @@ def one_way(path: Array, turns: list[int]) -> Array:
         branch = slice(first if first == 0 else first + 1, last + 1)
         smooth[branch] = isotonic_regression(path[branch], increasing=bool(path[last] > path[first])).x
     return smooth
-
-
-def _smallest_motion(angle: Array) -> float:
-    """Return the smallest motion [rad]: six standard deviations of the noise of the angle, or two of its steps."""
-    steps = np.abs(np.diff(angle))
-    smallest = float(steps[steps > 0.0].min(initial=np.inf))
-    quantised = np.mean(steps == 0.0) > 0.2  # an encoder that stands still repeats itself
-    return max(MIN_MOTION_SIGMA * noise_sigma(angle), 2.0 * smallest if quantised and np.isfinite(smallest) else 0.0, 1e-12)
 
 
 def _ramps(torque: Array) -> list[slice]:

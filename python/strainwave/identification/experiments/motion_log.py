@@ -230,7 +230,7 @@ class MotionLog(ComparedByFields):
         effort = per_torque(model, self.effort) * torque + self.induced(model)
         if self.delayed:
             effort = self.motion.late(effort[np.newaxis], unknown["delay"])[0][0]
-        return np.asarray(effort + sum(_zeros(unknown)))
+        return np.asarray(effort + unknown.get(f"{self.effort}_zero", 0.0))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
         """Return measured less predicted effort at every instant of the grid, at rest, too, shape (m,).
@@ -242,7 +242,6 @@ class MotionLog(ComparedByFields):
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
         unknown, others = self._unknown(nuisances), self._others(nuisances)
-        zeros = _zeros(unknown)
         described = _core.parameters(model)
         paths = [described[number][0] for number in numbers]
         scale = per_torque(model, self.effort)
@@ -254,14 +253,14 @@ class MotionLog(ComparedByFields):
         ]
         by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
         of_shares = [by_load * each for each in self.regressors.values()]
-        series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
+        series = np.stack([effort, *slopes, *of_shares])
+        of_measurement = [np.ones_like(effort)] if f"{self.effort}_zero" in unknown else []
         if self.delayed:
-            series, change = self.motion.late(series, unknown["delay"])
-            by_delay = [change]
-        own, of_nuisances = series[1 : 1 + len(slopes)], series[1 + len(slopes) :]
-        by_zero = [np.ones_like(effort) for _ in zeros]
-        found = np.array([*own, *by_zero, *by_delay, *of_nuisances]).reshape(-1, len(effort))
-        return series[0] + sum(zeros), found
+            series, by_delay = self.motion.late(series, unknown["delay"])
+            of_measurement.append(by_delay)
+        by_numbers, by_shares = np.split(series[1:], [len(slopes)])
+        every = np.array([*by_numbers, *of_measurement, *by_shares]).reshape(-1, len(effort))
+        return series[0] + unknown.get(f"{self.effort}_zero", 0.0), every
 
     def _unknown(self, nuisances: Array) -> dict[str, float]:
         """Return the value of each nuisance by its name."""
@@ -297,24 +296,9 @@ def turnover_speed(speed: Array) -> float:
     return max(TURNS_OVER * float(np.quantile(np.abs(speed), FAST_QUANTILE)), 1e-300)
 
 
-def _zeros(unknown: Mapping[str, float]) -> list[float]:
-    """Return the zeros of channels among nuisances."""
-    return [value for name, value in unknown.items() if name.endswith("_zero")]
-
-
 def inertia_of(drive: Drive) -> float:
     """Return the inertia of the load [kg.m2]; 0 for one that is moved from outside."""
     return float(getattr(drive.load, "inertia", 0.0))
-
-
-def rigid_drive(drive: Drive) -> Drive:
-    """Return the drive with a rigid gear: ratio, input inertia and friction alone.
-
-    Along a measured motion stiffness, hysteresis and kinematic error move neither shaft; without them it takes less time.
-    """
-    gear = drive.gear
-    places = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
-    return drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **places))
 
 
 def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> tuple[Array, Array]:
@@ -332,24 +316,26 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     Returns:
         torque, shape (n,); derivatives, shape (paths, n), 0 by numbers that a rigid drive lacks
     """
-    rigid = rigid_drive(drive)
+    gear = drive.gear  # without stiffness, hysteresis and kinematic error, which move no shaft along a measured motion
+    friction = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
+    rigid = drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **friction))
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(rigid))}
     inputs = np.zeros((len(motion.time), INPUT_COUNT))
     inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
+    asked, states = [numbers[paths[place]] for place in places], motion.states
     with kernels.prepared(rigid, "inverse_dynamics", len(inputs)):
-        torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
-    found = np.zeros((len(paths), len(torque)))
-    found[places] = slopes
-    return torque, found
+        torque, by_numbers = _core.inverse_dynamics(rigid, states, inputs, asked)
+    slopes = np.zeros((len(paths), len(torque)))
+    slopes[places] = by_numbers
+    return torque, slopes
 
 
 def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
     """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
-    ratio = drive.gear.kinematics.ratio
-    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
-    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=MIN_INERTIA))
-    return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, input_inertia=0.0)
+    still = drive.replace(gear=gear, motor=drive.motor.replace(inertia=MIN_INERTIA))
+    return np.asarray(gear.kinematics.ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
 def per_torque(drive: Drive, effort: str) -> float:

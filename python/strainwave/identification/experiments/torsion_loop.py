@@ -91,7 +91,10 @@ class TorsionLoop(ComparedByFields):
                 "structure.Lumped())"
             )
         twist = twist - give * torque
-        twist, torque, moments = thinned(twist, torque, _moments(recording))
+        clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
+        duration = float(np.ptp(clock))
+        moments = (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
+        twist, torque, moments = thinned(twist, torque, moments)
         corners: list[tuple[int, float]] = []
         if ratio is not None:
             settled = slid(twist)
@@ -242,13 +245,6 @@ class TorsionLoop(ComparedByFields):
             return np.concatenate(([self.middle], twist, twist))
         sense = np.sign(twist[np.argmax(twist != twist[0])] - twist[0])
         return np.concatenate(([twist[0] - sense * PRESLIDING_SHARE * np.ptp(twist)], twist))
-
-
-def _moments(recording: Recording) -> Array:
-    """Return the time of each sample as a share of the duration, shape (n,)."""
-    clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
-    duration = float(np.ptp(clock))
-    return (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
 
 
 def _crossings(twist: Array, torque: Array) -> Array:

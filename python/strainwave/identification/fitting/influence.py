@@ -231,7 +231,9 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     if not chosen:
         return ()
     size = size[chosen]  # a fit may have gone far in an open direction: its beginning has a size too
-    wider = _wider(found, problem.naive_sigma(best, weights))
+    stated, naive = np.array([each.sigma for each in estimates]), problem.naive_sigma(best, weights)[:known]
+    both = np.isfinite(stated) & np.isfinite(naive) & (naive > 0.0)
+    wider = float(np.median(stated[both] / naive[both])) if both.any() else 1.0  # as residuals correlate
     directions, sigmas = _directions(rows, chosen, size, wider)
     open_ones = []
     for direction, sigma in zip(directions, sigmas, strict=True):
@@ -257,14 +259,6 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
         deviation = float(np.linalg.norm(roots @ gradient))
         made.append(Combination(paths, tuple(changes.tolist()), float(sigma), words, value, deviation, unit))
     return tuple(made)
-
-
-def _wider(found: Fit, naive: Array) -> float:
-    """Return the factor of standard deviations over those by the second derivatives of the cost, as residuals hang together."""
-    known = len(found.plan.unknowns)
-    stated = np.array([each.sigma for each in found.estimates[:known]])
-    both = np.isfinite(stated) & np.isfinite(naive[:known]) & (naive[:known] > 0.0)
-    return float(np.median(stated[both] / naive[:known][both])) if both.any() else 1.0
 
 
 def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tuple[Array, Array]:

@@ -135,12 +135,6 @@ class _SettledError(Exception):
         self.part = part
 
 
-def _step(rows: Array, left: Array) -> tuple[Array, float]:
-    """Return the step of Gauss and Newton, and its decrease of the sum of squares if residuals were linear."""
-    step = solved(rows, -left)
-    return step, float(np.sum((rows @ step) ** 2))
-
-
 class Problem:
     """Least squares of all records: the unknowns, their prediction, and its weighted difference to the measurement."""
 
@@ -294,7 +288,8 @@ class Problem:
             columns = linearised(part.tobytes())
             rows, left = columns[:, :-1], columns[:, -1]
             if squared:
-                step, gain = _step(rows, left)
+                step = solved(rows, -left)  # of Gauss and Newton
+                gain = float(np.sum((rows @ step) ** 2))  # decrease of the sum of squares if residuals were linear
                 if gain <= MIN_RELATIVE_GAIN * tolerance * float(left @ left):
                     raise _SettledError(np.clip(part + step, lowest, highest))
             return rows
@@ -479,7 +474,7 @@ class Waves:
         ]  # fmt: skip
         pairs = [
             (own, phase) for own, phase in pairs
-            if start[own] > 0.0 and np.isinf([*_limits(unknowns[phase]), unknowns[own].high]).all()
+            if start[own] > 0.0 and np.isinf([unknowns[phase].low, unknowns[phase].high, unknowns[own].high]).all()
         ]  # fmt: skip
         amplitude, phase = np.array(pairs, np.intp).reshape(-1, 2).T
         return cls(amplitude, phase, start[phase])
@@ -509,7 +504,3 @@ class Waves:
         found = ends.copy()
         found[self.amplitude], found[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
         return found
-
-
-def _limits(unknown: Unknown) -> tuple[float, float]:
-    return unknown.low, unknown.high

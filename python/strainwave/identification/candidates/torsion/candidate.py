@@ -31,6 +31,7 @@ from strainwave.identification.candidates.torsion.dissipation import (
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT, Answer, SpringKind, solve
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.identification.fitting.unknowns import Estimate
 
 SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 Array = NDArray[np.float64]
@@ -101,10 +102,11 @@ def _fitted(
 
 def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
     """Yield the best candidate with fewer and fewer Maxwell elements, as long as its error is at most `good`."""
-    found = best
-    while len(found.dissipation.elements(found.fit.gear)) > 1 and found.error <= good:
-        found = with_fewer(found, known)
-        yield found
+    fewer = best
+    while len(fewer.dissipation.elements(fewer.fit.gear)) > 1 and fewer.error <= good:
+        gear = merged(fewer.fit.gear)  # the two as one that slip at the most similar twists
+        fewer = finished(gear, fewer.loop, fewer.fit.training, fewer.spring, fewer.dissipation, known)
+        yield fewer
 
 
 def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Dissipation]:
@@ -180,15 +182,19 @@ def starts(
     """
     steady = loop.without_drift()
     if dissipation.is_slow:
-        steady, training = _sparse(steady, training)
+        few = slice(None, None, -(-len(steady.twist) // MAX_START_SAMPLES))  # which suffice for initial values
+        moments = None if steady.moments is None else steady.moments[few]
+        steady = replace(steady, twist=steady.twist[few], torque=steady.torque[few], moments=moments, corners=())
+        training = training[few]
     middle = 0.0 if loop.single_branch else loop.centre
     half = float(np.abs(steady.twist - middle).max())
     torque = steady.torque - dissipation.known(steady, gear)
-    zeros = _zero_columns(steady)
+    level = float(np.abs(steady.torque).max())
+    either_way = [] if steady.single_branch else [level, -level]  # of a zero of the torque that is not known
+    zeros = np.full((len(steady.twist), len(either_way)), either_way)
     libraries = [spring.library(steady.twist - middle, half, gear), dissipation.library(steady, gear)]
     rows = [replace(library, torques=library.torques[training]) for library in libraries]
     answers = solve(torque[training], rows, zeros[training], most)
-    level = float(np.abs(steady.torque).max())
 
     def begun(answer: Answer) -> Start:
         torque_zero = level * float(answer.weights[-1][0] - answer.weights[-1][1]) if zeros.size else 0.0
@@ -234,21 +240,20 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
     """
     if found.loop.single_branch:
         return found
+
+    def is_shown(estimate: Estimate) -> bool:
+        return estimate.path not in DRIFTS or abs(estimate.value) > MIN_DRIFT_SIGMA * estimate.sigma
+
     begun = resumed(found)
     loops = [replace(begun, torque_drift=0.0), replace(begun, twist_drift=0.0)]
     tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.dissipation, known) for loop in loops]
-    shown = [each for each in tried if each.error < found.error and _drift_shown(each)]
+    shown = [each for each in tried if each.error < found.error and all(map(is_shown, each.fit.estimates))]
     return min([found, *shown], key=lambda each: each.error)
 
 
 def drifts(found: TorsionCandidate) -> dict[str, Any]:
     """Return the fitted drifts by name."""
     return {e.path: e.value for e in found.fit.estimates if e.path in DRIFTS}
-
-
-def _drift_shown(found: TorsionCandidate) -> bool:
-    sigma = {e.path: e.sigma for e in found.fit.estimates}
-    return all(abs(value) > MIN_DRIFT_SIGMA * sigma[name] for name, value in drifts(found).items())
 
 
 def resumed(found: TorsionCandidate) -> TorsionLoop:
@@ -269,11 +274,6 @@ def finished(
     return TorsionCandidate(spring, dissipation, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
 
 
-def with_fewer(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
-    """Return the candidate with the two Maxwell elements as one that slip at the most similar twists."""
-    return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.dissipation, known)
-
-
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation) -> Fit:
     """Return the fit, without elements that the loop does not separate from the spring or from nothing.
 
@@ -285,7 +285,10 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     stiff: set[int] = set()
     for last in [*(MAX_ROUNDS - 1) * [False], True]:
         free = spring.free(gear) + dissipation.free(gear, stiff)
-        found = _in_order(fit(gear, loop, free, training=training), spring)
+        found = fit(gear, loop, free, training=training)
+        ordered = spring.in_order(found.gear.stiffness)
+        if ordered is not found.gear.stiffness:
+            found = replace(found, model=found.gear.replace(stiffness=ordered))
         fitted = dissipation.elements(found.gear)
         if last:
             break
@@ -321,25 +324,3 @@ def _alike(elements: Sequence[tuple[float, float]]) -> bool:
     """True if two Maxwell elements slip at nearly the same twist."""
     slips = np.sort([f / k for k, f in elements])
     return bool(np.any(slips[1:] < MIN_SLIP_RATIO * slips[:-1]))
-
-
-def _in_order(found: Fit, spring: SpringKind) -> Fit:
-    """Return the same fit, the knees of its spring in order."""
-    ordered = spring.in_order(found.gear.stiffness)
-    return found if ordered is found.gear.stiffness else replace(found, model=found.gear.replace(stiffness=ordered))
-
-
-def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop, NDArray[np.bool_]]:
-    """Return a loop of few samples, which suffice for initial values."""
-    step = -(-len(loop.twist) // MAX_START_SAMPLES)
-    few = slice(None, None, step)
-    moments = None if loop.moments is None else loop.moments[few]
-    return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments, corners=()), training[few]
-
-
-def _zero_columns(loop: TorsionLoop) -> Array:
-    """Return the columns of a zero of the torque, either way; none if it is known."""
-    if loop.single_branch:
-        return np.empty((len(loop.twist), 0))
-    level = np.full(len(loop.twist), np.abs(loop.torque).max())
-    return np.column_stack((level, -level))

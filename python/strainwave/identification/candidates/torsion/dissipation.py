@@ -78,8 +78,8 @@ class Elements(Dissipation):
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         """Return the torques of elements of unit stiffness."""
-        path, slips = loop.path(loop.centre), half_span(loop) * SLIPS
-        traces = [hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path) for slip in slips.tolist()]
+        slips = half_span(loop) * SLIPS
+        traces = unit_traces(loop.path(loop.centre), slips)
         places = tuple(range(len(slips)))
         put = Choice(places, lambda g, weights: g.replace(hysteresis=_neighbours(weights, slips)))
         return Library.of([trace[loop.compared] for trace in traces], [put])
@@ -141,6 +141,11 @@ class InputFriction(Dissipation):
 def half_span(loop: TorsionLoop) -> float:
     """Return half of the range of the twist of a loop [rad]."""
     return 0.5 * float(np.ptp(loop.twist))
+
+
+def unit_traces(path: Array, slips: Array) -> list[Array]:
+    """Return the torques along a path of Maxwell elements of stiffness 1, one for each twist of slip."""
+    return [np.asarray(hysteresis.MaxwellSlip(stiffness=[1.0], breakaway=[slip]).trace(path)) for slip in slips.tolist()]
 
 
 def pairs(gear: Gear) -> list[tuple[float, float]]:
