@@ -8,7 +8,7 @@ of many waves the pass band contains little.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, friction
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.steady_shapes import QUADRANTS
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque, turnover_speed
+from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque, turnover_speed
 from strainwave.identification.fitting.fit import problem_of
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.statistics.linear_fit import linear_fit, solved
@@ -223,12 +223,10 @@ class Wave:
     kind: Literal["detent", "friction"]
     order: float
 
-    def columns(self, log: MotionLog) -> Array:
-        """Return its sine and cosine at every instant of the grid [1], shape (2, m)."""
-        motion = log.motion
-        sense = np.tanh(motion.speed / turnover_speed(motion.speed)) if self.kind == "friction" else 1.0
-        phase = self.order * motion.angle
-        return np.stack([sense * np.sin(phase), sense * np.cos(phase)])
+    def columns(self, angle: Array, sense: Array) -> Array:
+        """Return its sine and cosine over the angle, of a sense of motion from -1 to 1 [1], shape (2, m)."""
+        phase, factor = self.order * angle, sense if self.kind == "friction" else 1.0
+        return np.stack([factor * np.sin(phase), factor * np.cos(phase)])
 
 
 def with_ripple(model: MotionModel) -> MotionModel | None:
@@ -239,7 +237,7 @@ def with_ripple(model: MotionModel) -> MotionModel | None:
     """
     whole = replace(model, log=model.log.sliding_in_full_band())
     _, base, left = _linear(whole)
-    found = _beyond_chance(base, left, {wave: _effort(wave, whole)[:, whole.log.motion.rows].T for wave in _possible(whole)})
+    found = _beyond_chance(base, left, _efforts(whole))
     largest = max(map(abs, (*found.values(), *sizes_of_waves(model).values())), default=0.0)
     found = {wave: found[wave] for wave in sorted(found) if abs(found[wave]) > MIN_SIZE * largest}
     return _in_gear(model, found) if found else None
@@ -289,23 +287,25 @@ def sizes_of_waves(model: MotionModel) -> dict[Wave, float]:
     return detents | {Wave("friction", order): level * size for order, size in zip(law.order, law.amplitude, strict=True)}
 
 
-def _possible(model: MotionModel) -> Iterator[Wave]:
-    """Yield further waves whose turn the record contains often enough; of a detent over the output's turn, gravity is the
-    first."""
+def _efforts(model: MotionModel) -> dict[Wave, Array]:
+    """Return the effort of sine and cosine of further waves of 1 N.m at the samples compared, shape (n, 2) each.
+
+    The record contains their turn often enough. Of a detent over the output's turn, gravity is the first.
+    """
     log, ratio, known = model.log, abs(model.drive.gear.kinematics.ratio), sizes_of_waves(model)
-    moved = np.ptp(log.motion.angle[log.motion.rows]) / (2.0 * np.pi)
+    motion, delay, scale = log.motion, log.delay, per_torque(model.drive, log.effort)
+    sense = np.tanh(motion.speed / turnover_speed(motion.speed))
+    moved = np.ptp(motion.angle[motion.rows]) / (2.0 * np.pi)
     orders = [order for order in INPUT_ORDERS if moved >= MIN_INPUT_TURNS]
     orders += [order / ratio for order in OUTPUT_ORDERS if moved >= MIN_OUTPUT_TURNS * ratio]
     varies = not is_one_wave(log) and model.law.coulomb > 0.0
-    waves = [Wave(kind, order) for order in orders for kind in (("detent", "friction") if varies else ("detent",))]
-    yield from (wave for wave in waves if wave not in known)
-
-
-def _effort(wave: Wave, model: MotionModel) -> Array:
-    """Return the effort of sine and cosine of a wave of 1 N.m on the grid of a log, shape (2, m)."""
-    log = model.log
-    series = per_torque(model.drive, log.effort) * wave.columns(log)
-    return log.motion.late(series, log.delay)[0] if log.delayed else series
+    efforts = {}
+    for wave in (Wave(kind, order) for order in orders for kind in (("detent", "friction") if varies else ("detent",))):
+        if wave not in known:
+            series = scale * wave.columns(motion.angle, sense)
+            series = late(series, delay, motion.step)[0] if log.delayed else series
+            efforts[wave] = series[:, motion.rows].T
+    return efforts
 
 
 def _linear(model: MotionModel) -> tuple[list[str], Array, Array]:

@@ -33,6 +33,7 @@ Side = Literal["input", "output"]
 EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # best first
 REVERSAL_ANGLE = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
 MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
+CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
 OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
 MAX_SHARE_OF_GAPS = 0.2  # of the time of a log: with more of it, gaps are why nothing is left to compare
 MIN_SOUND = 0.999  # share of sound samples around an instant: rounding of times decides nothing
@@ -229,7 +230,7 @@ class MotionLog(ComparedByFields):
         unknown = self._unknown(nuisances)
         effort = per_torque(model, self.effort) * torque + self.induced(model)
         if self.delayed:
-            effort = self.motion.late(effort[np.newaxis], unknown["delay"])[0][0]
+            effort = late(effort[np.newaxis], unknown["delay"], self.motion.step)[0][0]
         return np.asarray(effort + unknown.get(f"{self.effort}_zero", 0.0))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
@@ -256,7 +257,7 @@ class MotionLog(ComparedByFields):
         series = np.stack([effort, *slopes, *of_shares])
         of_measurement = [np.ones_like(effort)] if f"{self.effort}_zero" in unknown else []
         if self.delayed:
-            series, by_delay = self.motion.late(series, unknown["delay"])
+            series, by_delay = late(series, unknown["delay"], self.motion.step)
             of_measurement.append(by_delay)
         by_numbers, by_shares = np.split(series[1:], [len(slopes)])
         every = np.array([*by_numbers, *of_measurement, *by_shares]).reshape(-1, len(effort))
@@ -291,6 +292,30 @@ class MotionLog(ComparedByFields):
         return np.asarray((there - torque) / step)
 
 
+def late(series: Array, delay: float, step: float) -> tuple[Array, Array]:
+    """Return series after a delay, and the derivative of the first by the delay, shapes (k, n), (n,).
+
+    Interpolated by the cubic of Catmull and Rom (1974), whose slope has no steps: a fit of the delay then ends.
+
+    Args:
+        series: shape (k, n)
+        delay: [s]
+        step: between samples [s]
+    """
+    n = series.shape[1]
+    shift = min(max(delay / step, -n), n)
+    whole = int(np.floor(shift))
+    u = 1.0 - (shift - whole)
+    weights = CATMULL_ROM @ np.array([1.0, u, u**2, u**3])
+    change = CATMULL_ROM @ np.array([0.0, 1.0, 2.0 * u, 3.0 * u**2]) / -step
+    near = series[:, np.clip(np.arange(-2, n + 1) - whole, 0, n - 1)]
+    after, by_delay = np.zeros_like(series), np.zeros(n)
+    for tap, (weight, rate) in enumerate(zip(weights, change, strict=True)):
+        after = after + weight * near[:, tap : tap + n]
+        by_delay = by_delay + rate * near[0, tap : tap + n]
+    return after, by_delay
+
+
 def turnover_speed(speed: Array) -> float:
     """Return the speed of the input about which the sign of friction turns over [rad/s], by the speeds of a log."""
     return max(TURNS_OVER * float(np.quantile(np.abs(speed), FAST_QUANTILE)), 1e-300)
@@ -323,7 +348,9 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     inputs = np.zeros((len(motion.time), INPUT_COUNT))
     inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
-    asked, states = [numbers[paths[place]] for place in places], motion.states
+    speed, steps = np.where(motion.resting, 0.0, motion.speed), np.diff(motion.time, prepend=motion.time[0])
+    states = np.column_stack([motion.angle, speed, motion.acceleration, steps])
+    asked = [numbers[paths[place]] for place in places]
     with kernels.prepared(rigid, "inverse_dynamics", len(inputs)):
         torque, by_numbers = _core.inverse_dynamics(rigid, states, inputs, asked)
     slopes = np.zeros((len(paths), len(torque)))

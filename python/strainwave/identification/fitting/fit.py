@@ -406,7 +406,7 @@ def problem_of(
         _check_branch(experiment, [link.path for link in links])
         of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
         built.append(FitRecord(experiment, mask, own, links, of_gear, first))
-        first += len(experiment.nuisances)
+        first = built[-1].nuisances.stop
     return Problem(asked, built, loss)
 
 

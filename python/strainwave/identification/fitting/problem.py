@@ -67,6 +67,8 @@ class FitRecord:
 
     Attributes:
         measured: what the fit compares with, shape (channels, n); that of the experiment
+        of_measurement: unknowns of the measurement
+        nuisances: their places among the unknowns
     """
 
     def __init__(
@@ -88,7 +90,8 @@ class FitRecord:
             raise ValueError(
                 f"training has shape {self.training.shape}; the measurement has {n} samples, give one value for each"
             )
-        self.nuisances = slice(first, first + len(experiment.nuisances))
+        self.of_measurement = experiment.nuisances
+        self.nuisances = slice(first, first + len(self.of_measurement))
         self._before = model
         self._numbers = [value for _, value, *_ in _core.parameters(model)]
         numbers = {path: place for place, (path, *_) in enumerate(_core.parameters(self.part_of(model)))}
@@ -98,7 +101,7 @@ class FitRecord:
     @property
     def samples(self) -> int:
         """Count of the measured values that take part."""
-        return int(self.training.sum()) * len(self.experiment.channels)
+        return int(self.training.sum()) * len(self.measured)
 
     def part_of(self, model: Any) -> Any:
         """Return the part of the model that the experiment is of."""
@@ -141,7 +144,7 @@ class Problem:
     def __init__(self, plan: FitParameters, records: Sequence[FitRecord], loss: LossName) -> None:
         self.plan, self.records, self.loss_name, self.loss = plan, records, loss, LOSSES[loss]
         known = len(plan.unknowns)
-        self.size = known + sum(len(record.experiment.nuisances) for record in records)
+        self.size = known + sum(len(record.of_measurement) for record in records)
         if self.size == 0:
             raise ValueError("free must name at least one parameter: nothing else of this measurement is unknown")
         samples = sum(record.samples for record in records)
@@ -160,7 +163,7 @@ class Problem:
 
     def start(self) -> Array:
         """Return the unknowns from which a fit starts, within their limits, shape (unknowns,)."""
-        nuisances = [each.start for record in self.records for each in record.experiment.nuisances]
+        nuisances = [each.start for record in self.records for each in record.of_measurement]
         return np.array([each.start for each in self.plan.unknowns] + nuisances)
 
     def limits(self) -> Array:
@@ -385,7 +388,7 @@ class Problem:
         described += [(each.path, each.unit, each.before, at_limit[each.unknown]) for each in tied]
         for name, record in zip(self.plan.records, self.records, strict=True):
             own = f"{OF_RECORD}{name}" if len(self.records) > 1 else ""
-            described += [(f"{each.name}{own}", each.unit, each.start, False) for each in record.experiment.nuisances]
+            described += [(f"{each.name}{own}", each.unit, each.start, False) for each in record.of_measurement]
         estimates = tuple(
             Estimate(path, unit, before, float(value), float(s), bool(end), float(f))
             for (path, unit, before, end), value, s, f in zip(described, values, sigma, freedom[order], strict=True)

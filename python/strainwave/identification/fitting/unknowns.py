@@ -235,14 +235,15 @@ class _Parameters:
         for path, followed in ties.items():
             if path not in self.known:
                 raise unknown(path, self.known)
-            pair = (followed, 1.0) if isinstance(followed, str) else followed
-            if not (isinstance(pair, tuple | list) and len(pair) == 2 and isinstance(pair[0], str)):
-                raise TypeError(
-                    f"ties[{quoted(path)}] must be a path, or a path and a factor as (path, 2.0), not {shortened(followed)}"
-                )
-            leader, factor = pair[0], arguments.number(f"the factor of ties[{quoted(path)}]", pair[1])
-            if factor == 0.0:
-                raise ValueError(f"the factor of ties[{quoted(path)}] is 0; to make {path} zero, name it in fixed")
+            leader, factor = followed, 1.0
+            if not isinstance(followed, str):
+                if not (isinstance(followed, tuple | list) and len(followed) == 2 and isinstance(followed[0], str)):
+                    raise TypeError(
+                        f"ties[{quoted(path)}] must be a path, or a path and a factor as (path, 2.0), not {shortened(followed)}"
+                    )
+                leader, factor = followed[0], arguments.number(f"the factor of ties[{quoted(path)}]", followed[1])
+                if factor == 0.0:
+                    raise ValueError(f"the factor of ties[{quoted(path)}] is 0; to make {path} zero, name it in fixed")
             if leader not in self.known:
                 raise unknown(leader, self.known)
             if path in self.free:
@@ -262,11 +263,13 @@ class _Parameters:
             (path, record): (each.low, each.high) for path, each in self.free.items() for record in range(len(self.records))
         }
 
-        def narrow(path: str, record: int, low: float, high: float, why: str) -> None:
+        def narrow(path: str, record: int, low: float, high: float, name: str, key: str) -> None:
             before = limits[path, record]
             limits[path, record] = (max(before[0], low), min(before[1], high))
             if limits[path, record][0] >= limits[path, record][1]:
-                raise ValueError(f"{why} leaves {path} no value: it must lie in [{before[0]:g}, {before[1]:g}] too")
+                raise ValueError(
+                    f"{name}[{quoted(key)}] leaves {path} no value: it must lie in [{before[0]:g}, {before[1]:g}] too"
+                )
 
         for key, pair in bounds.items():
             if not (isinstance(pair, tuple | list) and len(pair) == 2):
@@ -276,11 +279,11 @@ class _Parameters:
                 raise ValueError(f"bounds[{quoted(key)}] = ({low:g}, {high:g}) must have the lower end first")
             for each, records in self._named("bounds", key, self.free):
                 for record in records:
-                    narrow(each.path, record, low, high, f"bounds[{quoted(key)}]")
+                    narrow(each.path, record, low, high, "bounds", key)
         for path, (leader, factor) in leaders.items():
             low, high = sorted((self.known[path].low / factor, self.known[path].high / factor))
             for record in range(len(self.records)):
-                narrow(leader, record, low, high, f"ties[{quoted(path)}]")
+                narrow(leader, record, low, high, "ties", path)
         return limits
 
     def _unknown(self, path: str, record: int | None, limits: Mapping[tuple[str, int], tuple[float, float]]) -> Unknown:
