@@ -92,8 +92,8 @@ def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) ->
         return np.stack([np.sin(angle), np.cos(angle)])
 
     place, count = names.index(arm.joint), len(names)
-    found = best_chain(torque, base[:, PLAIN_BASE], lambda each: own.filtered(series(each)).T[known], place, count)
-    sums = [each for each in (found.sums() if found else ()) if len(each) > 1]  # its own angle has a place in the load
+    chain = best_chain(torque, base[:, PLAIN_BASE], lambda each: own.filtered(series(each)).T[known], place, count)
+    sums = [each for each in (chain.sums() if chain else ()) if len(each) > 1]  # its own angle has a place in the load
     waves = {
         f"{wave}({word})": values
         for each, word in zip(sums, named(sums, names), strict=True)
@@ -101,8 +101,8 @@ def _gravity(arm: _Arm, own: Motion, torque: Array, base: Array, known: Rows) ->
     }
     if not waves:
         return {}
-    kept = independent(base, own.filtered(np.stack(list(waves.values()))).T[known], MIN_INDEPENDENT_WAVE)
-    return {name: values for place, (name, values) in enumerate(waves.items()) if place in kept}
+    separable = independent(base, own.filtered(np.stack(list(waves.values()))).T[known], MIN_INDEPENDENT_WAVE)
+    return {name: values for place, (name, values) in enumerate(waves.items()) if place in separable}
 
 
 def _with_energy(log: MotionLog, arm: _Arm, torque: Array, base: Array, known: Rows) -> Iterator[MotionLog]:
@@ -216,24 +216,24 @@ class _Term:
         wave, slope = (np.sin(angle), np.cos(angle)) if self.is_sine else (np.cos(angle), -np.sin(angle))
         by_own = dict(self.sum_of).get(own, 0) * slope
         first, second = (moving[name] for name in self.speeds)
-        found: Array = -by_own * first.speed * second.speed
+        centrifugal: Array = -by_own * first.speed * second.speed
         if own not in self.speeds:
-            return found
+            return centrifugal
         other = second if self.speeds[0] == own else first
         twice = 2.0 if other is moving[own] else 1.0
         if other is moving[own]:  # about its mean, so that the inertia of the joint is that in the mean
             wave = wave - np.average(wave, weights=other.acceleration**2)
         rate = slope * sum((times * moving[name].speed for name, times in self.sum_of), np.zeros_like(angle))
-        return found + twice * (wave * other.acceleration + rate * other.speed)
+        return centrifugal + twice * (wave * other.acceleration + rate * other.speed)
 
 
 def _columns(motion: Motion, arm: _Arm, terms: Sequence[_Term]) -> Array:
     """Return the terms in the pass band, a column each, shape (rows, terms)."""
-    found = np.empty((len(motion.rows), len(terms)))
+    columns = np.empty((len(motion.rows), len(terms)))
     for begin in range(0, len(terms), TERMS_AT_ONCE):
         some = terms[begin : begin + TERMS_AT_ONCE]
-        found[:, begin : begin + len(some)] = motion.filtered(np.stack([term.torque(arm) for term in some])).T
-    return found
+        columns[:, begin : begin + len(some)] = motion.filtered(np.stack([term.torque(arm) for term in some])).T
+    return columns
 
 
 # ---- Selection of terms ----------------------------------------------------------------------------------------------
@@ -290,14 +290,14 @@ class Selection:
 
 def independent(base: Array, columns: Array, least: float = MIN_INDEPENDENT) -> list[int]:
     """Return the columns of which at least a share is made up neither by a base nor by columns before them."""
-    kept: list[int] = []
+    places: list[int] = []
     orthogonal, _ = np.linalg.qr(base)
     for place, column in enumerate(columns.T):
         rest = column - orthogonal @ (orthogonal.T @ column)
         if np.linalg.norm(rest) > least * np.linalg.norm(column):
-            kept.append(place)
+            places.append(place)
             orthogonal = np.column_stack([orthogonal, rest / np.linalg.norm(rest)])
-    return kept
+    return places
 
 
 # ---- Gravity along a chain of joints ---------------------------------------------------------------------------------

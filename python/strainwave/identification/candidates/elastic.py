@@ -136,10 +136,10 @@ def fit_elastic(
     blocks = _training_blocks(log.motion.time)
     starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
     if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
-        found = _fitted(recording, log, starts, scale, reach, delayed=True)
-        delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
+        late_output = _fitted(recording, log, starts, scale, reach, delayed=True)
+        delay = next(each.value for each in late_output.fit.estimates if each.path == DELAY)
         if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
-            return found
+            return late_output
     return _fitted(recording, log, starts, scale, reach, delayed=False)
 
 
@@ -152,12 +152,12 @@ def _fitted(
     best, rivals = _chosen(compared, starts, scale, reach)
     whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
-    found = fit_of(problem, x, problem.weights(x))
-    sigmas = sigma_by_blocks(problem, x, found.estimates)
-    apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in found.estimates])
+    whole_fit = fit_of(problem, x, problem.weights(x))
+    sigmas = sigma_by_blocks(problem, x, whole_fit.estimates)
+    apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in whole_fit.estimates])
     twist = float(np.std(whole.measured[0] - whole.angle / drive.gear.kinematics.ratio))
-    reached = float(np.abs(whole.gear_torque(found.model)).max())
-    return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
+    reached = float(np.abs(whole.gear_torque(whole_fit.model)).max())
+    return ElasticCandidate(best.name, whole_fit, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
 def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
@@ -435,7 +435,7 @@ def elastic_starts(
     rows = rows[:: -(-len(rows) // MAX_ROWS)]
     training = blocks[rows]
     memory = np.column_stack(unit_traces(twist, half * SLIPS))
-    found = []
+    starts = []
     for count in range(MAX_ELEMENTS + 1):
         elements = _elements(memory[rows], half, count)
         for spring in SPRINGS:
@@ -455,10 +455,10 @@ def elastic_starts(
             critical = 2.0 * float(np.sqrt(gear.stiffness.tangent(0.0) * load))
             gear = gear.replace(damping=max(float(answer.weights[-1][0]), MIN_START_DAMPING * critical))
             begun = drive.replace(gear=gear, load=_load(drive, answer.weights[-1], scaled, free, by_gravity))
-            found.append(ElasticStart(begun, error))
-    if not found:
+            starts.append(ElasticStart(begun, error))
+    if not starts:
         raise ValueError("no spring explains the angle between the shafts")
-    return sorted(found, key=lambda each: each.error)
+    return sorted(starts, key=lambda each: each.error)
 
 
 class _TwoSegments(Piecewise):
@@ -467,8 +467,8 @@ class _TwoSegments(Piecewise):
     words = "three-segment spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
-        found = super().library(twist, half, gear)
-        return Library(found.torques, tuple(replace(each, put=_two_segments(each.put)) for each in found.choices))
+        two_segments = super().library(twist, half, gear)
+        return Library(two_segments.torques, tuple(replace(each, put=_two_segments(each.put)) for each in two_segments.choices))
 
 
 def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array], Gear]:

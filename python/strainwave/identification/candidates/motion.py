@@ -95,13 +95,13 @@ def fit_motion(
     delay = best_delay(logs[0], drive)
     late = with_delay(best.model, delay) if delay else None  # alone, and with each other part, as each may hide the other
     delayed = [] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
-    found = [each for model in delayed if (each := search.tried(model)) is not None]
+    with_delays = [each for model in delayed if (each := search.tried(model)) is not None]
     best = _completed(search, best)
-    if found:
-        start = found[0]  # a delay alone, unless a part beside it explains more
-        for each in found[1:]:
+    if with_delays:
+        start = with_delays[0]  # a delay alone, unless a part beside it explains more
+        for each in with_delays[1:]:
             start = each if each.explains_more_than(start) else start
-        other, beside = _completed(search, start), _completed(search, min(found, key=lambda each: each.error_in_band))
+        other, beside = _completed(search, start), _completed(search, min(with_delays, key=lambda each: each.error_in_band))
         other = beside if beside.explains_more_than(other) else other
         is_stand_in = bool(sizes_of_waves(best.model)) and not best.predicts_as_well_as(other)  # waves for a delay
         best = other if is_stand_in or other.explains_more_than(best) else best
@@ -164,23 +164,23 @@ class _Search:
         if model is None:
             return None
         try:
-            found = candidate_of(model, self.held_out, self.priors)
+            candidate = candidate_of(model, self.held_out, self.priors)
         except (ValueError, FloatingPointError) as error:
             self.failures.append(str(error))
             return None
-        if not _is_sensible(found):
+        if not _is_sensible(candidate):
             return None
-        found = _with(found, found.with_bristles())
-        self.every.append(found)
-        return found
+        candidate = _with(candidate, candidate.with_bristles())
+        self.every.append(candidate)
+        return candidate
 
     def first(self, models: Sequence[MotionModel]) -> MotionCandidate:
         """Return the simplest model, in the band in which it shows most."""
-        found = [each for model in models if (each := self.tried(model)) is not None]
-        if not found:
+        candidates = [each for model in models if (each := self.tried(model)) is not None]
+        if not candidates:
             raise ValueError(self.failures[0])
-        best = found[0]
-        for other in found[1:]:
+        best = candidates[0]
+        for other in candidates[1:]:
             best = other if other.is_clearer_than(best) else best
         return best
 
@@ -195,13 +195,13 @@ class _Search:
         """Return the model with those parts that explain more, the one that explains most first."""
         while parts:
             tried = {part: self.tried(part(best.model)) for part in parts}
-            found = {part: each for part, each in tried.items() if each is not None}
-            chosen = min(found, key=lambda part: found[part].error_in_band, default=None)
-            if chosen is None or not found[chosen].explains_more_than(best):
+            candidates = {part: each for part, each in tried.items() if each is not None}
+            chosen = min(candidates, key=lambda part: candidates[part].error_in_band, default=None)
+            if chosen is None or not candidates[chosen].explains_more_than(best):
                 break
-            promising = [part for part, each in found.items() if each.error_in_band < MAX_ERROR * best.error_in_band]
+            promising = [part for part, each in candidates.items() if each.error_in_band < MAX_ERROR * best.error_in_band]
             parts = [part for part in promising if part is not chosen]
-            best = found[chosen]
+            best = candidates[chosen]
         return best
 
     def rippled(self, best: MotionCandidate) -> MotionCandidate:

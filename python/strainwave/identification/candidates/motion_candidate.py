@@ -203,15 +203,15 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
     """Fit a model as nearly as comparisons need, from where it starts."""
     before = {plain(path): prior for path, prior in priors.items()}
     (by_all,) = by_full_band(model, [np.ones(len(model.log.motion.time), bool)])
-    known = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_all}
-    asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known)
+    known_before = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_all}
+    asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known_before)
     problem = problem_of(asked, model.drive, [model.log], [None])
     x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)
     (record,) = problem.records
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
     unexplained = float(np.std(model.log.measured - predicted) / max(float(np.std(model.log.measured)), 1e-300))
-    return MotionCandidate(ended, known, unexplained, tuple(_folds(problem, x, ended, held_out)))
+    return MotionCandidate(ended, known_before, unexplained, tuple(_folds(problem, x, ended, held_out)))
 
 
 def _folds(problem: Problem, x: Array, ended: MotionModel, held_out: Sequence[Rows]) -> Iterator[Fold]:

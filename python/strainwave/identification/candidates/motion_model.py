@@ -237,10 +237,10 @@ def with_ripple(model: MotionModel) -> MotionModel | None:
     """
     whole = replace(model, log=model.log.sliding_in_full_band())
     _, base, left = _linear(whole)
-    found = _beyond_chance(base, left, _efforts(whole))
-    largest = max(map(abs, (*found.values(), *sizes_of_waves(model).values())), default=0.0)
-    found = {wave: found[wave] for wave in sorted(found) if abs(found[wave]) > MIN_SIZE * largest}
-    return _in_gear(model, found) if found else None
+    waves = _beyond_chance(base, left, _efforts(whole))
+    largest = max(map(abs, (*waves.values(), *sizes_of_waves(model).values())), default=0.0)
+    waves = {wave: waves[wave] for wave in sorted(waves) if abs(waves[wave]) > MIN_SIZE * largest}
+    return _in_gear(model, waves) if waves else None
 
 
 def by_full_band(model: MotionModel, trainings: Sequence[Rows]) -> list[dict[str, tuple[float, float]]]:
@@ -339,21 +339,21 @@ def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> dic
     white = dict(zip(pairs, np.split(between, len(pairs), axis=1), strict=True))
     rest, chosen = (target - columns @ solved(columns, target))[:, 0], list[Wave]()
     while True:
-        found = dict[Wave, Array]()
+        left_by = dict[Wave, Array]()
         for wave in (each for each in pairs if each not in chosen):
             own, size = white[wave] - columns @ solved(columns, white[wave]), np.linalg.norm(white[wave], axis=0)
             directions, shares, _ = np.linalg.svd(own / np.maximum(size, 1e-300), full_matrices=False)
             if shares[-1] > MIN_OWN_SHARE:
-                found[wave] = rest - directions @ (directions.T @ rest)
-        best = min(found, key=lambda wave: float(found[wave] @ found[wave]), default=None)
+                left_by[wave] = rest - directions @ (directions.T @ rest)
+        best = min(left_by, key=lambda wave: float(left_by[wave] @ left_by[wave]), default=None)
         if best is None:
             break
-        freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(found[best])
-        gain = chance_of_gain(float(rest @ rest), float(found[best] @ found[best]), 2, freedom)
+        freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(left_by[best])
+        gain = chance_of_gain(float(rest @ rest), float(left_by[best] @ left_by[best]), 2, freedom)
         if len(pairs) * gain > MAX_CHANCE:
             break
         chosen.append(best)
-        columns, rest = np.column_stack([columns, white[best]]), found[best]
+        columns, rest = np.column_stack([columns, white[best]]), left_by[best]
     sizes = solved(columns, target[:, 0])[base.shape[1] :].reshape(-1, 2)
     return {wave: complex(*size) for wave, size in zip(chosen, sizes.tolist(), strict=True)}
 

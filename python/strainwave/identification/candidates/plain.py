@@ -133,10 +133,10 @@ def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     rivals = [time, time**2, speed * np.abs(speed), sign * np.sqrt(np.abs(speed)), sign * time]
     series = motion.filtered(np.stack([_torque(log, drive), *own, *rivals]))
     target, columns, others = series[0], series[1 : 1 + len(own)].T, series[1 + len(own) :].T
-    found = linear_fit(columns, target, rivals=others)
-    amplitudes: Array = found.values[:2]
+    regression = linear_fit(columns, target, rivals=others)
+    amplitudes: Array = regression.values[:2]
     share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
-    variance = float(share @ found.covariance[:2, :2] @ share)
+    variance = float(share @ regression.covariance[:2, :2] @ share)
     return float(np.sqrt(variance)) if variance >= 0.0 else np.inf  # nan of an infinite variance, too
 
 
@@ -178,11 +178,11 @@ def stretches(log: MotionLog) -> list[Rows]:
 def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> list[Array]:
     """Return what plain least squares leaves of the effort in each block by the rest of the motion, each of shape (block,)."""
     columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    scale, found = abs(per_torque(drive, log.effort)), []
+    scale, residuals = abs(per_torque(drive, log.effort)), []
     for block in blocks:
         weights = solved(columns[rows & ~block], torque[rows & ~block])
-        found.append(scale * (torque - columns @ weights)[block])
-    return found
+        residuals.append(scale * (torque - columns @ weights)[block])
+    return residuals
 
 
 def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:

@@ -107,11 +107,11 @@ def constant_speeds(time: Array, angle: Array) -> list[slice]:
     ends = [0, *(turns + 1).tolist(), len(there)]
     pieces = [slice(int(there[first]), int(there[last - 1]) + apart + 1) for first, last in pairwise(ends)]
     moved = sum(float(time[piece.stop - 1] - time[piece.start]) for piece in pieces)
-    found = [part for piece in pieces if (part := _constant(time, angle, piece)) is not None]
-    steady = sum(float(time[part.stop - 1] - time[part.start]) for part in found)
+    stretches = [part for piece in pieces if (part := _constant(time, angle, piece)) is not None]
+    steady = sum(float(time[part.stop - 1] - time[part.start]) for part in stretches)
     turned = [float(angle[piece.stop - 1] - angle[piece.start]) for piece in pieces]
     one_way = abs(sum(turned)) > (1.0 - MAX_BACKWARD) * sum(map(abs, turned))
-    return found if one_way and steady >= MIN_STEADY_SHARE * moved else []
+    return stretches if one_way and steady >= MIN_STEADY_SHARE * moved else []
 
 
 def _constant(time: Array, angle: Array, piece: slice) -> slice | None:
@@ -152,12 +152,12 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
     """
     shorter = [_shorter(torque, angle) for torque, angle in zip(torques, angles, strict=True)]
     alone, before = _means(torques), [torque - torque.mean() for torque, _ in shorter]
-    known = [angle for _, angle in shorter if angle is not None]
-    if len(known) < len(shorter) or np.ptp(np.concatenate(known)) < MIN_GRAVITY_ANGLE:
+    measured_angles = [angle for _, angle in shorter if angle is not None]
+    if len(measured_angles) < len(shorter) or np.ptp(np.concatenate(measured_angles)) < MIN_GRAVITY_ANGLE:
         return alone
-    found, left = _with_gravity(shorter, _symmetry(speeds, alone.torque))
-    entangled = found.sigma.max() > MAX_RELATIVE_SIGMA * float(np.median(np.abs(found.torque)))
-    return alone if entangled or _chance(before, left, len(shorter) + 2) > MAX_CHANCE else found
+    levels, left = _with_gravity(shorter, _symmetry(speeds, alone.torque))
+    entangled = levels.sigma.max() > MAX_RELATIVE_SIGMA * float(np.median(np.abs(levels.torque)))
+    return alone if entangled or _chance(before, left, len(shorter) + 2) > MAX_CHANCE else levels
 
 
 def _means(torques: Sequence[Array]) -> Levels:
@@ -197,7 +197,7 @@ def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array
     columns = np.repeat(np.eye(many), counts, axis=0)
     jacobian = np.column_stack((columns, np.cos(angle), np.sin(angle)))
     torque = np.concatenate([torque for torque, _ in stretches])
-    known = np.column_stack((before, np.zeros((len(before), 2))))
+    symmetry = np.column_stack((before, np.zeros((len(before), 2))))
 
     def left_by(found: Array) -> list[Array]:
         return np.split(torque - jacobian @ found, np.cumsum(counts)[:-1])
@@ -205,10 +205,10 @@ def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array
     first = left_by(solved(jacobian, torque))
     alike = sum(float(each @ each) * max(correlation_length(each), 1.0) for each in first) / len(torque)
     scale = max(float(np.sqrt(alike)), 1e-300)  # of a row, so that rows that are alike do not outweigh what is assumed
-    rows, values = np.concatenate((jacobian / scale, known)), np.concatenate((torque / scale, np.zeros(len(known))))
+    rows, values = np.concatenate((jacobian / scale, symmetry)), np.concatenate((torque / scale, np.zeros(len(symmetry))))
     found = solved(rows, values)
     residuals = left_by(found)
-    covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], known)
+    covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], symmetry)
     cosine, sine = found[many:].tolist()
     of_cosine, of_sine = np.sqrt(np.diag(covariance)[many:]).tolist()
     return Levels(found[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine)), residuals
@@ -275,16 +275,16 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     u, k = (angle - middle) / half, np.arange(1, ORDER_COUNT + 1)
     waves = (*np.cos(np.outer(k, angle)), *np.sin(np.outer(k, angle)))
     jacobian = np.stack([u**2, u, np.ones_like(u), *waves, *([speed] if several else [])], axis=1)
-    found = solved(jacobian, level)
-    residual = level - jacobian @ found
+    coefficients = solved(jacobian, level)
+    residual = level - jacobian @ coefficients
     covariance, freedom = covariance_of(jacobian, residual[np.newaxis])
-    back = np.eye(len(found))  # from the parabola in u to that in q
+    back = np.eye(len(coefficients))  # from the parabola in u to that in q
     back[:3, :3] = [
         [half**-2, 0.0, 0.0],
         [-2.0 * middle / half**2, 1.0 / half, 0.0],
         [(middle / half) ** 2, -middle / half, 1.0],
     ]
-    numbers, sigma = back @ found, np.sqrt(np.diag(back @ covariance @ back.T))
+    numbers, sigma = back @ coefficients, np.sqrt(np.diag(back @ covariance @ back.T))
     names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(ORDER_COUNT))]
     units = ["N.m/rad2", "N.m/rad", *(2 * ORDER_COUNT + 1) * ["N.m"]]
     if several:
@@ -421,16 +421,16 @@ def friction_over_temperature(recording: Recording, effort: str = "current", *, 
     one_way = bool(np.ptp(way) == 0.0)
     of_load = [] if one_way else [np.ones_like(way), warmer]
     jacobian = np.stack([*of_load, way, way * warmer], axis=1)
-    found = solved(jacobian, force)
-    scores = jacobian * (force - jacobian @ found)[:, np.newaxis]
+    coefficients = solved(jacobian, force)
+    scores = jacobian * (force - jacobian @ coefficients)[:, np.newaxis]
     inverse = normal_inverse(jacobian)
     covariances = [
         (length, _clustered(scores, inverse, length)) for length in BLOCK_LENGTHS if len(force) // length >= MIN_BLOCKS
     ]
     length, covariance = max(covariances, key=lambda each: each[1][-1, -1])
-    freedom = len(force) / length - len(found)
+    freedom = len(force) / length - len(coefficients)
     wider = student(ONE_SIGMA, freedom)
-    level, slope = found[-2:].tolist()
+    level, slope = coefficients[-2:].tolist()
     if level == 0.0:
         raise ValueError(
             f"no part of {effort} turns round with the motion: it shows no friction; give the current or torque of "

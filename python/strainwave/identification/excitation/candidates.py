@@ -145,8 +145,8 @@ def torsion(
                 continue
             loop = _loop(gear, largest, at)
             _, slopes = _predicted(loop, gear, paths)
-            rows, known = (slopes[:, 0] / _loop_sigma(noise, at, limits, resolution, amplitude / largest)).T, len(paths)
-            information = without_nuisances(rows[:, :known], rows[:, known:])
+            rows, count = (slopes[:, 0] / _loop_sigma(noise, at, limits, resolution, amplitude / largest)).T, len(paths)
+            information = without_nuisances(rows[:, :count], rows[:, count:])
             held = "input" if at is None else "output"
             turn = largest if at is None else abs(ratio) * largest
             words = (
@@ -179,15 +179,15 @@ def motion(
     drive: Drive, paths: Sequence[str], limits: Limits, noise: Noise, commands: Mapping[str, Scenario], sample: float
 ) -> Iterator[CandidateMeasurement]:
     """Yield runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
-    known = outputs(drive)
-    channels = [name for name in noise if name in known] or [name for name in USUAL_COLUMNS if name in known]
+    recorded = outputs(drive)
+    channels = [name for name in noise if name in recorded] or [name for name in USUAL_COLUMNS if name in recorded]
     tried = [(name, share, command * share) for name, command in commands.items() for share in COMMAND_SHARES]
     runs = [(*each, simulate(drive, each[-1], sample=sample)) for each in tried]
-    kept = [each for each in runs if _kept(each[-1], limits)]
-    if not kept:
+    within_limits = [each for each in runs if _kept(each[-1], limits)]
+    if not within_limits:
         return
-    sigmas = [_sigma(noise, each, max(float(np.ptp(run[each])) for *_, run in kept)) for each in channels]
-    for name, share, command, run in kept:
+    sigmas = [_sigma(noise, each, max(float(np.ptp(run[each])) for *_, run in within_limits)) for each in channels]
+    for name, share, command, run in within_limits:
         experiment = DriveLog.of(run.select(["time", "command", *channels]), drive, channels)
         _, slopes = _predicted(experiment, drive, paths)
         rows = np.concatenate([slopes[:, row] / sigma for row, sigma in enumerate(sigmas)], axis=1).T
@@ -218,10 +218,10 @@ def _predicted(experiment: Experiment, model: Any, paths: Sequence[str]) -> tupl
     places = {path: each.number for path, each in every(model).items()}
     present = [row for row, path in enumerate(paths) if path in places]
     start = np.array([each.start for each in experiment.nuisances])
-    predicted, found = experiment.predict(model, [places[paths[row]] for row in present], start)
+    predicted, derivatives = experiment.predict(model, [places[paths[row]] for row in present], start)
     slopes = np.zeros((len(paths) + len(start), *predicted.shape))
-    slopes[present] = found[: len(present)]
-    slopes[len(paths) :] = found[len(present) :]
+    slopes[present] = derivatives[: len(present)]
+    slopes[len(paths) :] = derivatives[len(present) :]
     return predicted, slopes
 
 

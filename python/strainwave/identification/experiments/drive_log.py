@@ -84,21 +84,21 @@ class DriveLog(ComparedByFields):
         """
         check_columns(recording, ("time", "command"), "a drive log")
         arguments.drive(drive)
-        known = {name: each.unit for name, each in outputs(drive).items() if name != "command"}
-        wanted = [name for name in recording.names if name in known] if channels is None else channels
+        comparable = {name: each.unit for name, each in outputs(drive).items() if name != "command"}
+        wanted = [name for name in recording.names if name in comparable] if channels is None else channels
         chosen = tuple(arguments.names("channels", wanted))
         for name in chosen:
-            if name not in known or name not in recording:
-                raise ValueError(f"a drive log cannot be compared by {quoted(name)}; it can by {', '.join(known)}")
+            if name not in comparable or name not in recording:
+                raise ValueError(f"a drive log cannot be compared by {quoted(name)}; it can by {', '.join(comparable)}")
         if not chosen:
-            raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(known)}")
+            raise ValueError(f"a drive log needs a measured column to compare; one of {', '.join(comparable)}")
         if initial is None:
             _check_hanging(recording, drive, chosen)
         command = recording.values("command", command_unit(drive))
         if controls_position(drive) and initial is None:
             command = command - command[0]
         time = recording.time - recording.time[0]
-        measured = np.stack([sensible(recording, name, known[name]) for name in chosen])
+        measured = np.stack([sensible(recording, name, comparable[name]) for name in chosen])
         if initial is None:
             _check_rest(time, dict(zip(chosen, measured, strict=True)))
         step = fine_enough(drive, MAX_STEP, MIN_STEP) if dt is None else arguments.seconds("dt", dt)
@@ -112,7 +112,7 @@ class DriveLog(ComparedByFields):
             scenario.table(time[knots], command[knots]),
             time_compared[::every],
             chosen,
-            tuple(known[name] for name in chosen),
+            tuple(comparable[name] for name in chosen),
             measured[:, ::every],
             min(step, interval) if dt is None and interval > step / 2.0 else step,
             len(recording),
@@ -351,29 +351,29 @@ class DrivenLog(ComparedByFields):
         moved = driven(model)
         places = {each[0]: place for place, each in enumerate(_core.parameters(moved))}
         described = _core.parameters(model)
-        known = [number for number in numbers if described[number][0] in places]
+        of_drive = [number for number in numbers if described[number][0] in places]
         names = list(outputs(moved))
-        run, slopes, first = self._run(moved, [places[described[number][0]] for number in known])
+        run, slopes, first = self._run(moved, [places[described[number][0]] for number in of_drive])
         predicted = np.stack([self._shown(model, name, run[_measured_by(name)][first:]) for name in self.channels])
-        found = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
-        of_known = dict(zip(known, slopes, strict=True))
+        derivatives = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
+        of_known = dict(zip(of_drive, slopes, strict=True))
         torque = run["motor_torque"][first:]
         for row, name in enumerate(self.channels):
             for unknown, number in enumerate(numbers):
                 if number in of_known:
                     rate = of_known[number][names.index(_measured_by(name)), first:]
-                    found[unknown, row] = rate * self._scale(model, name)
+                    derivatives[unknown, row] = rate * self._scale(model, name)
                 elif name in EFFORTS:
-                    found[unknown, row] = self._by_motor(model, number, name, torque)
+                    derivatives[unknown, row] = self._by_motor(model, number, name, torque)
         zeros, delays = np.split(nuisances, [len(self.zeros)])
         for unknown, (name, delay) in enumerate(zip(self.delayed, delays, strict=True), len(numbers) + len(zeros)):
             row = self.channels.index(name)
-            series = self._late(np.concatenate([predicted[np.newaxis, row], found[: len(numbers), row]]), float(delay))
-            predicted[row], found[: len(numbers), row], found[unknown, row] = series[0], series[1:-1], -series[-1]
+            series = self._late(np.concatenate([predicted[np.newaxis, row], derivatives[: len(numbers), row]]), float(delay))
+            predicted[row], derivatives[: len(numbers), row], derivatives[unknown, row] = series[0], series[1:-1], -series[-1]
         for unknown, (name, zero) in enumerate(zip(self.zeros, zeros, strict=True), len(numbers)):
             predicted[self.channels.index(name)] += zero
-            found[unknown, self.channels.index(name)] = 1.0
-        return predicted, found
+            derivatives[unknown, self.channels.index(name)] = 1.0
+        return predicted, derivatives
 
     def gear_torque(self, model: Drive) -> Array:
         """Return the torque that the gear transmits at the instants compared [N.m], shape (n,)."""

@@ -58,7 +58,7 @@ class Motion(ComparedByFields):
     every: int
     cutoff: float
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Step of the grid [s]."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)

@@ -120,9 +120,9 @@ class MotionLog(ComparedByFields):
         sound_there = (on_grid(sound.astype(float)) > MIN_SOUND) & ~in_gap(time, motion.time, motion.step)
         motion = replace(motion, known=motion.known & sound_there)
         _check_moves(motion, time)
-        known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
+        extra = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
-            motion, effort, force, on_grid(values), sound_there, known,
+            motion, effort, force, on_grid(values), sound_there, extra,
             {name: on_grid(recording[name]) for name in regressors},
         )  # fmt: skip
 

@@ -129,14 +129,14 @@ class TorsionLoop(ComparedByFields):
     def nuisances(self) -> tuple[Nuisance, ...]:
         if self.single_branch:
             return ()
-        found = [Nuisance("torque_zero", "N.m", self.torque_zero)]
+        unknowns = [Nuisance("torque_zero", "N.m", self.torque_zero)]
         if self.twist_zero is None:
-            found.append(Nuisance("twist_zero", "rad", self.centre))
+            unknowns.append(Nuisance("twist_zero", "rad", self.centre))
         if self.torque_drift is not None:
-            found.append(Nuisance("torque_drift", "N.m", self.torque_drift))
+            unknowns.append(Nuisance("torque_drift", "N.m", self.torque_drift))
         if self.twist_drift is not None:
-            found.append(Nuisance("twist_drift", "rad", self.twist_drift))
-        return tuple(found)
+            unknowns.append(Nuisance("twist_drift", "rad", self.twist_drift))
+        return tuple(unknowns)
 
     @cached_property
     def single_branch(self) -> bool:

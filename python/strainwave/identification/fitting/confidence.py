@@ -458,11 +458,11 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
       friction_input.viscous (1)  0.00030112  N·m·s/rad
     """
     starts, random = arguments.whole("starts", starts, 1, MAX_STARTS), np.random.default_rng(arguments.whole("seed", seed, 0))
-    problem, given = solved_problem(found)
-    unknowns, weights = found.plan.unknowns, problem.weights(given)
-    reached = [given]
+    problem, solution = solved_problem(found)
+    unknowns, weights = found.plan.unknowns, problem.weights(solution)
+    reached = [solution]
     for _ in range(starts):
-        start = given.copy()
+        start = solution.copy()
         start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
         with suppress(ValueError, FloatingPointError):  # a model that is not valid there
             reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_STEPS_OF_START))

@@ -378,9 +378,9 @@ def solved_problem(found: Fit, more: Sequence[Prior] = ()) -> tuple[Problem, Arr
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
     asked = replace(found.plan, priors=(*found.plan.priors, *more))
     problem = problem_of(asked, found.parts[0].model, experiments, masks, found.loss)
-    known, tied = len(found.plan.unknowns), len(found.plan.tied)
+    free, tied = len(found.plan.unknowns), len(found.plan.tied)
     values = [each.value for each in found.estimates]
-    return problem, np.array(values[:known] + values[known + tied :])
+    return problem, np.array(values[:free] + values[free + tied :])
 
 
 def with_priors(found: Fit, priors: Mapping[str, tuple[float, float]]) -> Fit:

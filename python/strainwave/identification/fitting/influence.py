@@ -107,12 +107,14 @@ def influence(found: Fit) -> InfluenceOfKept:
     by -(J'J)^-1 J'K, with J and K the derivatives of the weighted residuals by the free and by the kept parameters. The part of
     K that no change of the estimates makes up for remains in the residuals, and so bounds the kept parameter.
     """
-    known = every(found.model)
+    described = every(found.model)
     nuisances = len(found.experiment.nuisances)
     of_model = found.estimates[: len(found.estimates) - nuisances]
-    free = [known[estimate.path] for estimate in of_model]
+    free = [described[estimate.path] for estimate in of_model]
     own = {each.number for each in free}
-    kept = tuple(each for each in known.values() if each.number not in own and each.value != 0.0 and not _is_exact(each.path))
+    kept = tuple(
+        each for each in described.values() if each.number not in own and each.value != 0.0 and not _is_exact(each.path)
+    )
     unknowns = np.array([estimate.value for estimate in found.estimates[len(of_model) :]])
     numbers = [each.number for each in (*free, *kept)]
     _, slopes = found.experiment.predict(found.model, numbers, unknowns)
@@ -178,8 +180,8 @@ class Combination(ComparedByFields, Statement):
 
     def _headline(self) -> str:
         if len(self.paths) == 1:
-            known = f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else ""
-            return f"{self.paths[0]} is not determined{known}"
+            spread = f": ± {100.0 * self.relative:.0f} %" if np.isfinite(self.relative) else ""
+            return f"{self.paths[0]} is not determined{spread}"
         if self.formula:
             names = " and ".join(self.paths)
             return f"of {names} only {self.formula} is determined: {self.value:.4g} ± {self.sigma:.1g} {self.unit}".rstrip()
@@ -224,14 +226,14 @@ def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) 
     problem, best = solved_problem(found)
     weights = problem.weights(best)
     rows = problem.information(best, weights)
-    known = len(found.plan.unknowns)
-    estimates = found.estimates[:known]
+    count = len(found.plan.unknowns)
+    estimates = found.estimates[:count]
     size = np.array([max(abs(value), abs(each.start)) for value, each in zip(best, estimates, strict=False)])
-    chosen = [place for place in range(known) if best[place] != 0.0]
+    chosen = [place for place in range(count) if best[place] != 0.0]
     if not chosen:
         return ()
     size = size[chosen]  # a fit may have gone far in an open direction: its beginning has a size too
-    stated, naive = np.array([each.sigma for each in estimates]), problem.naive_sigma(best, weights)[:known]
+    stated, naive = np.array([each.sigma for each in estimates]), problem.naive_sigma(best, weights)[:count]
     both = np.isfinite(stated) & np.isfinite(naive) & (naive > 0.0)
     wider = float(np.median(stated[both] / naive[both])) if both.any() else 1.0  # as residuals correlate
     directions, sigmas = _directions(rows, chosen, size, wider)

@@ -229,7 +229,7 @@ class Problem:
         columns = np.concatenate((self.jacobian(x, before or self.first_weights()), self.prior_rows()[0]))
         size = np.linalg.norm(columns, axis=0)
         leverage = np.sum(np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))[0] ** 2, axis=1)
-        found, first = [], 0
+        weights, first = [], 0
         for record, residual in zip(self.records, self.residuals(x), strict=True):
             channels, n = residual.shape
             used = leverage[first : first + channels * n].reshape(channels, n).sum(axis=1, keepdims=True)
@@ -237,8 +237,8 @@ class Problem:
             sigma = self.loss.sigma(residual) * np.sqrt(n / np.maximum(n - used, 1.0))
             sigma = np.maximum(sigma, MIN_NOISE * scale(record.measured))
             lengths = [correlation_length(slope(self.loss, row)) for row in residual / sigma]
-            found.append(Weights(1.0 / sigma, np.full((channels, 1), float(np.exp(np.mean(np.log(lengths)))))))
-        return found
+            weights.append(Weights(1.0 / sigma, np.full((channels, 1), float(np.exp(np.mean(np.log(lengths)))))))
+        return weights
 
     def solve(
         self, start: Array, weights: Sequence[Weights], tolerance: float, held: Sequence[int] = (), trials: int = MAX_TRIALS
@@ -484,26 +484,26 @@ class Waves:
 
     def parts(self, x: Array) -> Array:
         """Return unknowns with real and imaginary part in the places of amplitude and phase."""
-        found, wave = x.copy(), x[self.amplitude] * np.exp(1j * (x[self.phase] - self.turned))
-        found[self.amplitude], found[self.phase] = wave.real, wave.imag
-        return found
+        parts, wave = x.copy(), x[self.amplitude] * np.exp(1j * (x[self.phase] - self.turned))
+        parts[self.amplitude], parts[self.phase] = wave.real, wave.imag
+        return parts
 
     def unknowns(self, parts: Array) -> Array:
         """Return the unknowns of parts; a phase is within half a turn of that at the start."""
-        found, wave = parts.copy(), parts[self.amplitude] + 1j * parts[self.phase]
-        found[self.amplitude], found[self.phase] = np.abs(wave), self.turned + np.angle(wave)
-        return found
+        unknowns, wave = parts.copy(), parts[self.amplitude] + 1j * parts[self.phase]
+        unknowns[self.amplitude], unknowns[self.phase] = np.abs(wave), self.turned + np.angle(wave)
+        return unknowns
 
     def slopes(self, rows: Array, x: Array) -> Array:
         """Return derivatives by the parts, of those by the unknowns at x, shape (samples, unknowns)."""
-        found, angle = rows.copy(), x[self.phase] - self.turned
+        slopes, angle = rows.copy(), x[self.phase] - self.turned
         along, across = rows[:, self.amplitude], rows[:, self.phase] / np.maximum(x[self.amplitude], 1e-300)
-        found[:, self.amplitude] = along * np.cos(angle) - across * np.sin(angle)
-        found[:, self.phase] = along * np.sin(angle) + across * np.cos(angle)
-        return found
+        slopes[:, self.amplitude] = along * np.cos(angle) - across * np.sin(angle)
+        slopes[:, self.phase] = along * np.sin(angle) + across * np.cos(angle)
+        return slopes
 
     def limits(self, ends: Array) -> Array:
         """Return lowest and highest values of the parts, of those of the unknowns, shape (unknowns, 2)."""
-        found = ends.copy()
-        found[self.amplitude], found[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
-        return found
+        limits = ends.copy()
+        limits[self.amplitude], limits[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
+        return limits

@@ -224,9 +224,9 @@ class _Parameters:
             for each, records in self._named("fixed", key):
                 if each.path in self.free:
                     raise ValueError(f"{each.path} is both free and fixed; take it out of one of the two")
-                given = arguments.number(f"fixed[{quoted(key)}]", value, each.unit, "[]", each.low, each.high)
+                number = arguments.number(f"fixed[{quoted(key)}]", value, each.unit, "[]", each.low, each.high)
                 for record in records:
-                    numbers[record][each.number] = given
+                    numbers[record][each.number] = number
         return tuple(map(tuple, numbers))
 
     def _leaders(self, ties: Mapping[str, Any], fixed: Mapping[str, Any]) -> dict[str, tuple[str, float]]:
@@ -292,26 +292,26 @@ class _Parameters:
             *(limits[path, i] for i in ([record] if record is not None else range(len(self.records)))), strict=True
         )
         name = self._named_of(path, record)
-        found = Unknown(name, each.unit, each.value, max(lows), min(highs))
-        if found.start != each.value:
+        asked = Unknown(name, each.unit, each.value, max(lows), min(highs))
+        if asked.start != each.value:
             warn(
-                f"{name} starts at {found.start:g} {each.unit}: its value {each.value:g} {each.unit} lies out of its bounds",
+                f"{name} starts at {asked.start:g} {each.unit}: its value {each.value:g} {each.unit} lies out of its bounds",
                 RuntimeWarning,
                 stacklevel=5,
             )
-        return found
+        return asked
 
     def _priors(self, priors: Mapping[str, Any], links: tuple[tuple[ParameterLink, ...], ...]) -> tuple[Prior, ...]:
         """Return the priors of the unknowns; those of one record go before those of all."""
-        found: dict[tuple[int, str], Prior] = {}
+        priors_of: dict[tuple[int, str], Prior] = {}
         linked = {link.path for link in links[0]}
         for key, given in sorted(priors.items(), key=lambda item: OF_RECORD in str(item[0])):
             for each, records in self._named("priors", key, linked):
                 value, sigma = _prior(key, given, each)
                 for record in records:
                     link = next(link for link in links[record] if link.path == each.path)
-                    found[link.unknown, each.path] = Prior(link.unknown, link.factor, value, sigma)
-        return tuple(found.values())
+                    priors_of[link.unknown, each.path] = Prior(link.unknown, link.factor, value, sigma)
+        return tuple(priors_of.values())
 
     def _named(self, name: str, key: object, among: Any = None) -> list[tuple[Parameter, Sequence[int]]]:
         """Return the parameters that a key names, and the records for which: all, or the one behind the @."""

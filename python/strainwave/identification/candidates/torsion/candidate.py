@@ -89,15 +89,15 @@ def _fitted(
     loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], kinds: Sequence[tuple[SpringKind, Dissipation]]
 ) -> list[TorsionCandidate]:
     """Return the candidates of springs and dissipations for which there are samples enough; raises if there are for none."""
-    found, refused = list[TorsionCandidate](), list[ValueError]()
+    candidates, refused = list[TorsionCandidate](), list[ValueError]()
     for each in kinds:
         try:
-            found.append(candidate(loop, gear, training, *each))
+            candidates.append(candidate(loop, gear, training, *each))
         except ValueError as error:
             refused.append(error)
-    if not found:
+    if not candidates:
         raise refused[0]
-    return found
+    return candidates
 
 
 def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
@@ -267,11 +267,11 @@ def finished(
     begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation, known: Gear
 ) -> TorsionCandidate:
     """Return the candidate whose refinement begins with a gear."""
-    found = dissipation.finished(_refined(begin, loop, training, spring, dissipation), known)
-    held_out = found.rms(held_out=True)[0]
-    words = dissipation.words(found.gear)
+    refined = dissipation.finished(_refined(begin, loop, training, spring, dissipation), known)
+    held_out = refined.rms(held_out=True)[0]
+    words = dissipation.words(refined.gear)
     name = words if dissipation.whole_spring else f"{spring.words}{words}"
-    return TorsionCandidate(spring, dissipation, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
+    return TorsionCandidate(spring, dissipation, name, refined, float(refined.rms()[0] if np.isnan(held_out) else held_out))
 
 
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation) -> Fit:
@@ -285,27 +285,27 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     stiff: set[int] = set()
     for last in [*(MAX_ROUNDS - 1) * [False], True]:
         free = spring.free(gear) + dissipation.free(gear, stiff)
-        found = fit(gear, loop, free, training=training)
-        ordered = spring.in_order(found.gear.stiffness)
-        if ordered is not found.gear.stiffness:
-            found = replace(found, model=found.gear.replace(stiffness=ordered))
-        fitted = dissipation.elements(found.gear)
+        refined = fit(gear, loop, free, training=training)
+        ordered = spring.in_order(refined.gear.stiffness)
+        if ordered is not refined.gear.stiffness:
+            refined = replace(refined, model=refined.gear.replace(stiffness=ordered))
+        fitted = dissipation.elements(refined.gear)
         if last:
             break
         slipping = [(k, f) for k, f in fitted if MIN_ERROR_SHARE * span < f < MAX_SLIP * half * k]
         if len(slipping) < len(fitted):
             stuck = sum(k for k, f in fitted if f >= MAX_SLIP * half * k)
-            stiffened = spring.stiffened(found.gear.stiffness, stuck)
+            stiffened = spring.stiffened(refined.gear.stiffness, stuck)
             gear, stiff = gear.replace(stiffness=stiffened, hysteresis=maxwell(slipping)), set()
         elif _alike(slipping):
-            gear, stiff = merged(found.gear), set()
+            gear, stiff = merged(refined.gear), set()
         elif stiffer := {i for i, (k, f) in enumerate(fitted) if f < 0.999 * least * k}:
             stiff |= stiffer
             slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
-            gear = found.gear.replace(hysteresis=maxwell(slower))
+            gear = refined.gear.replace(hysteresis=maxwell(slower))
         else:
             break
-    return found
+    return refined
 
 
 def merged(gear: Gear) -> Gear:

@@ -43,10 +43,12 @@ class Dissipation(ABC):
     whole_spring = False  # True for a part that is a spring, too, and takes its place
     is_slow = False  # True if its library takes long to build
     minima = 1  # count of initial values that are fitted
+    name = ""  # its part of the name of the candidate
+    numbers: tuple[str, ...] = ()  # paths of the fitted parameters
 
-    @abstractmethod
     def words(self, gear: Gear) -> str:
         """Return its part of the name of the candidate."""
+        return self.name
 
     def known(self, loop: TorsionLoop, gear: Gear) -> Array:
         """Return the torque of the loop that is not fitted [N.m], shape (n,)."""
@@ -56,9 +58,9 @@ class Dissipation(ABC):
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         """Return the torques that it can contribute to the loop."""
 
-    @abstractmethod
     def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
         """Return the paths of the fitted parameters; of `stiff` Maxwell elements the breakaway alone."""
+        return [*self.numbers]
 
     def elements(self, gear: Gear) -> list[tuple[float, float]]:
         """Return stiffness and breakaway of each fitted Maxwell element."""
@@ -96,8 +98,7 @@ class Elements(Dissipation):
 class Nothing(Dissipation):
     """The spring alone; hysteresis and friction are as in the gear."""
 
-    def words(self, gear: Gear) -> str:
-        return ", hysteresis kept"
+    name = ", hysteresis kept"
 
     def known(self, loop: TorsionLoop, gear: Gear) -> Array:
         return loop.friction(gear) + _kept_hysteresis(loop, gear)
@@ -105,15 +106,12 @@ class Nothing(Dissipation):
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         return Library(np.empty((len(loop.twist), 0)), (Choice((), lambda g, weights: g),))
 
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return []
-
 
 class InputFriction(Dissipation):
     """Breakaway of the friction at the input, with the hysteresis of the gear; Coulomb's torque keeps its ratio to it."""
 
-    def words(self, gear: Gear) -> str:
-        return " with friction at the input, hysteresis kept"
+    name = " with friction at the input, hysteresis kept"
+    numbers = ("friction_input.breakaway",)
 
     def known(self, loop: TorsionLoop, gear: Gear) -> Array:
         return _kept_hysteresis(loop, gear)
@@ -128,9 +126,6 @@ class InputFriction(Dissipation):
         breakaway = max(float(weights[0]), 1e-3 * law.breakaway)
         with warnings.catch_warnings(action="ignore", category=PassivityWarning):
             return gear.replace(friction_input=law.replace(coulomb=0.0, breakaway=breakaway))
-
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return ["friction_input.breakaway"]
 
     def finished(self, found: Fit, start: Gear) -> Fit:
         known, breakaway = _dry(start), _dry(found.gear).breakaway
@@ -192,15 +187,11 @@ def _kept_hysteresis(loop: TorsionLoop, gear: Gear) -> Array:
 class Without(Dissipation):
     """No hysteresis at all: an elastic gear."""
 
-    def words(self, gear: Gear) -> str:
-        return " without hysteresis"
+    name = " without hysteresis"
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         none = hysteresis.MaxwellSlip(stiffness=[], breakaway=[])
         return Library(np.empty((len(loop.twist), 0)), (Choice((), lambda g, weights: g.replace(hysteresis=none)),))
-
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return []
 
 
 @dataclass(frozen=True)
@@ -208,6 +199,7 @@ class FadingMemory(Dissipation):
     """A count of branches that forget. The torque of each is linear in its stiffness."""
 
     branches: int
+    numbers = ("hysteresis.stiffness", "hysteresis.forgetting")
     rates = np.geomspace(0.3, 100.0, 16)  # per half the span, of forgetting, tried
 
     def words(self, gear: Gear) -> str:
@@ -228,9 +220,6 @@ class FadingMemory(Dissipation):
         units = [hysteresis.FadingMemory(stiffness=[1.0], forgetting=[rate]) for rate in rates]
         places = combinations(range(len(rates)), self.branches)
         return Library.of([_traced(unit, loop) for unit in units], [choice(each) for each in places])
-
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return ["hysteresis.stiffness", "hysteresis.forgetting"]
 
 
 class Scaled(Dissipation):
@@ -260,8 +249,8 @@ class Scaled(Dissipation):
 class BoucWen(Scaled):
     """Bouc and Wen's law. Its twist is the reach, saturation over stiffness."""
 
-    def words(self, gear: Gear) -> str:
-        return " with Bouc and Wen's hysteresis"
+    name = " with Bouc and Wen's hysteresis"
+    numbers = ("hysteresis.stiffness", "hysteresis.saturation", "hysteresis.sharpness", "hysteresis.shape")
 
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
         for reach, sharpness, shape in product(np.geomspace(0.02, 1.0, 7), (1.2, 2.5, 6.0), (0.55, 0.75, 0.95)):
@@ -272,15 +261,12 @@ class BoucWen(Scaled):
         assert isinstance(law, hysteresis.BoucWen)
         return gear.replace(hysteresis=law.replace(stiffness=factor * law.stiffness, saturation=factor))
 
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return [f"hysteresis.{name}" for name in ("stiffness", "saturation", "sharpness", "shape")]
-
 
 class Preisach(Scaled):
     """Preisach's law of a density that falls as a power."""
 
-    def words(self, gear: Gear) -> str:
-        return " with Preisach's hysteresis of a power density"
+    name = " with Preisach's hysteresis of a power density"
+    numbers = ("hysteresis.density.limit", "hysteresis.density.saturation", "hysteresis.density.exponent")
 
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
         for limit, exponent in product((0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.5, 3.0), (1.3, 2.0, 4.0, 8.0)):
@@ -292,17 +278,12 @@ class Preisach(Scaled):
         assert isinstance(law.density, hysteresis.PowerDensity)
         return gear.replace(hysteresis=law.replace(density=law.density.replace(saturation=factor)))
 
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        return [f"hysteresis.density.{name}" for name in ("limit", "saturation", "exponent")]
-
 
 class Regimes(Scaled):
     """A stiffness for each regime, tried with equal regimes in both senses: lost motion from the width of the loop."""
 
     whole_spring = True
-
-    def words(self, gear: Gear) -> str:
-        return "a stiffness for each of four regimes"
+    name = "a stiffness for each of four regimes"
 
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
         half = half_span(loop)
@@ -328,9 +309,14 @@ class FrictionalWindup(Scaled):
     """Flexspline and wave generator as springs in series, and friction between them."""
 
     whole_spring = True
-
-    def words(self, gear: Gear) -> str:
-        return "friction inside multi-compliance"
+    name = "friction inside multi-compliance"
+    numbers = (
+        "hysteresis.springs.flexspline_stiffness",
+        "hysteresis.springs.flexspline_hardening",
+        "hysteresis.springs.wave_generator_stiffness",
+        "hysteresis.springs.wave_generator_hardening",
+        "hysteresis.friction",
+    )
 
     def units(self, loop: TorsionLoop, gear: Gear) -> Iterator[Law]:
         half, ratio = half_span(loop), abs(gear.kinematics.ratio)
@@ -342,10 +328,6 @@ class FrictionalWindup(Scaled):
         assert isinstance(law, hysteresis.FrictionalWindup)
         law = law.replace(springs=scaled(law.springs, factor), friction=factor * law.friction)
         return _alone(gear, law, factor)
-
-    def free(self, gear: Gear, stiff: Collection[int] = ()) -> list[str]:
-        parts = ("flexspline_stiffness", "flexspline_hardening", "wave_generator_stiffness", "wave_generator_hardening")
-        return [*(f"hysteresis.springs.{part}" for part in parts), "hysteresis.friction"]
 
 
 WHOLE: tuple[Dissipation, ...] = (Regimes(), FrictionalWindup())

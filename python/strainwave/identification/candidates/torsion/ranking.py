@@ -127,8 +127,8 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
         tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
-    found = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
-    return _ordered([each for each in found if each is not None])
+    judged = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
+    return _ordered([each for each in judged if each is not None])
 
 
 class _TriedCandidates:
@@ -146,10 +146,10 @@ class _TriedCandidates:
                     continue
                 try:
                     with _trying():
-                        found = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
+                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
-                self._found[spring, dissipation] = found
+                self._found[spring, dissipation] = fitted
 
     def drift(self) -> None:
         """Fit all again with a drift, if the best shows one."""
@@ -223,8 +223,8 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
 
 def _ordered(judged: Sequence[_Judged]) -> tuple[RankedCandidate, ...]:
     best = min((each for each in judged if np.isfinite(each.blocks).all()), key=lambda each: each.blocks.mean())
-    found = [_measured(each, best) for each in judged]
-    return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
+    measured = [_measured(each, best) for each in judged]
+    return tuple(sorted(measured, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
 
 
 def _measured(judged: _Judged, best: _Judged) -> RankedCandidate:

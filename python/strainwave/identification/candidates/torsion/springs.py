@@ -124,10 +124,10 @@ def solve(torque: Array, libraries: Sequence[Library], always: Array, most: int 
             [first + column for column in choice.columns] for first, choice in zip(firsts[:-1].tolist(), choices, strict=True)
         ]
         order = [*chain(*places), *constant]
-        found = _positive(triangle[:, order], triangle[:, -1])
-        if found is not None:
+        solution = _positive(triangle[:, order], triangle[:, -1])
+        if solution is not None:
             ends = np.cumsum([len(each) for each in places])
-            answers[numbers] = Answer(tuple(choices), tuple(np.split(found[0] / size[order], ends)), found[1])
+            answers[numbers] = Answer(tuple(choices), tuple(np.split(solution[0] / size[order], ends)), solution[1])
 
     chosen = (0,) * len(libraries)
     for _ in range(MAX_TURNS):
@@ -168,6 +168,8 @@ class SpringKind(ABC):
 
     words: str
     minima = 1  # count of initial curves that are fitted
+    in_parallel = ""  # number to which a linear spring in parallel adds its stiffness, if the sum is of the same kind
+    knows_zero = True  # its curve determines where the twist is zero
 
     @abstractmethod
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -179,35 +181,26 @@ class SpringKind(ABC):
 
     def stiffened(self, spring: Spring, k: float) -> Spring:
         """Return the spring in parallel with a linear one of stiffness k, if that is of the same kind; else the spring."""
-        return spring
+        name = self.in_parallel
+        return spring.replace(**{name: getattr(spring, name) + k}) if name else spring
 
     def in_order(self, spring: Spring) -> Spring:
         """Return the same curve, its knees in order."""
         return spring
 
-    @property
-    def knows_zero(self) -> bool:
-        """True if its curve determines where the twist is zero."""
-        return True
-
 
 class Linear(SpringKind):
     words = "linear spring"
+    in_parallel = "k"
+    knows_zero = False
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         return Library.of([twist], [Choice((0,), lambda g, w: g.replace(stiffness=stiffness.Linear(k=_soft(w))))])
 
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Linear)
-        return spring.replace(k=spring.k + k)
-
-    @property
-    def knows_zero(self) -> bool:
-        return False
-
 
 class Cubic(SpringKind):
     words = "cubic spring"
+    in_parallel = "a1"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def put(g: Gear, w: Array) -> Gear:
@@ -215,13 +208,10 @@ class Cubic(SpringKind):
 
         return Library.of([twist, half * (twist / half) ** 3], [Choice((0, 1), put)])
 
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Cubic)
-        return spring.replace(a1=spring.a1 + k)
-
 
 class Piecewise(SpringKind):
     words = "piecewise spring"
+    in_parallel = "k1"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def choice(place: int, knee: float) -> Choice:
@@ -232,10 +222,6 @@ class Piecewise(SpringKind):
 
         knees = (half * KNEES).tolist()
         return Library.of([twist, *_beyond(twist, knees)], [choice(place, knee) for place, knee in enumerate(knees)])
-
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Piecewise)
-        return spring.replace(k1=spring.k1 + k)
 
 
 class ThreeSegment(SpringKind):
