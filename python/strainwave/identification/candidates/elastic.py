@@ -72,13 +72,13 @@ CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
-GRAVITY = "load.gravity_torque"
+GRAVITY_PATH = "load.gravity_torque"
 FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
-WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
+WAVE_PATHS = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 Rows = NDArray[np.bool_]
 
 MAX_ELEMENTS = 2
-SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
+TRIED_SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
 MAX_ROWS = 3000  # of the regression
 MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
 UNREACHED_TORQUE = 1e6  # N.m: a knee there does nothing
@@ -134,7 +134,7 @@ def fit_elastic(
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
     rigid = transmitted_torque(log, drive), late * log.motion.speed / gear.kinematics.ratio
     blocks = _training_blocks(log.motion.time)
-    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
+    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY_PATH)
     if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
         late_output = _fitted(recording, log, starts, scale, reach, delayed=True)
         delay = next(each.value for each in late_output.fit.estimates if each.path == DELAY)
@@ -382,7 +382,7 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
     kept = {f"{SPRING}{name}" for name in beyond} | {scale}
     for path, *_ in _core.parameters(drive):
-        if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
+        if path.startswith((SPRING, MEMORY, *WAVE_PATHS, "gear.damping", "load.")) and path not in kept:
             yield path
 
 
@@ -434,11 +434,11 @@ def elastic_starts(
     rows = np.flatnonzero(used)
     rows = rows[:: -(-len(rows) // MAX_ROWS)]
     training = blocks[rows]
-    memory = np.column_stack(unit_traces(twist, half * SLIPS))
+    memory = np.column_stack(unit_traces(twist, half * TRIED_SLIPS))
     starts = []
     for count in range(MAX_ELEMENTS + 1):
         elements = _elements(memory[rows], half, count)
-        for spring in SPRINGS:
+        for spring in TRIED_SPRINGS:
             libraries = [elements, spring.library(twist[rows], half, drive.gear)]
             try:
                 (answer, *_) = solve(
@@ -481,7 +481,7 @@ def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array],
     return put_as_three
 
 
-SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
+TRIED_SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
 
 
 def _elements(torques: Array, half: float, count: int) -> Library:
@@ -489,13 +489,13 @@ def _elements(torques: Array, half: float, count: int) -> Library:
 
     def choice(places: tuple[int, ...]) -> Choice:
         def put(gear: Gear, weights: Array) -> Gear:
-            every = [(float(k), float(k) * half * float(SLIPS[place])) for k, place in zip(weights, places, strict=True)]
+            every = [(float(k), float(k) * half * float(TRIED_SLIPS[place])) for k, place in zip(weights, places, strict=True)]
             largest = float(np.abs(torques).max()) * max((k for k, _ in every), default=0.0)
             return gear.replace(hysteresis=maxwell([each for each in every if each[1] > MIN_TORQUE_SHARE * largest]))
 
         return Choice(places, put)
 
-    return Library(torques, tuple(choice(places) for places in combinations(range(len(SLIPS)), count)))
+    return Library(torques, tuple(choice(places) for places in combinations(range(len(TRIED_SLIPS)), count)))
 
 
 def _predicted(answer: Answer, libraries: list[Library], always: Array) -> Array:

@@ -50,8 +50,8 @@ MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves mor
 GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
 MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
 MAX_STEPS = 8  # of a fit while models are compared
-GRAVITY = ("load.gravity_torque", "load.gravity_phase")
-SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
+GRAVITY_PATHS = ("load.gravity_torque", "load.gravity_phase")
+SHAPE_NUMBERS = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
 OF_ALL_LAWS = (f"{INPUT}coulomb", f"{INPUT}viscous")  # numbers of friction that mean the same in each law
@@ -221,7 +221,7 @@ def _folds(problem: Problem, x: Array, ended: MotionModel, held_out: Sequence[Ro
     by_fold = by_full_band(ended, [~stretch for stretch in held_out])
     ((predicted, slopes),) = problem.predict(x)
     out = [stretch[log.motion.rows] for stretch in held_out]
-    without = without_rows(problem, x, out, SHAPES)
+    without = without_rows(problem, x, out, SHAPE_NUMBERS)
     for stretch, rows, there, waves in zip(held_out, out, without, by_fold, strict=True):
         for path, (value, _) in waves.items():
             there[places[path]] = value
@@ -258,7 +258,7 @@ def without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequenc
     size = np.linalg.norm(rows, axis=0)
     size[size == 0.0] = 1.0
     paths = [each.path for each in problem.plan.unknowns]
-    gravity = [paths.index(path) for path in GRAVITY] if set(GRAVITY) <= set(paths) else []
+    gravity = [paths.index(path) for path in GRAVITY_PATHS] if set(GRAVITY_PATHS) <= set(paths) else []
     low = np.where(np.isin(np.arange(len(x)), gravity), -np.inf, low)  # turned round rather than negative
     for out in outs:
         system = (np.concatenate([rows[~out], noise * before]) / size)[:, linear]

@@ -30,7 +30,7 @@ SIGMA_IF_ASSUMED = 0.5  # relative, of a kept value that is assumed
 MAX_RELATIVE_SIGMA = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
 MIN_RELATIVE_CHANGE = 0.02  # of the largest change in a direction; a parameter that changes less takes no part
 EXPONENT_TOLERANCE = 0.03  # relative, between an exponent and a ratio of small whole numbers
-EXPONENTS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
+SIMPLE_EXPONENTS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
 MIN_SINGULAR = 1e-9  # of the largest singular value; directions with a smaller one change nothing
 
 
@@ -288,7 +288,7 @@ def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Arr
         swapped = _formula(paths[::-1], units[::-1], values[::-1], moves[::-1])
         return None if swapped is None else (*swapped[:2], swapped[2][::-1], swapped[3])
     power = -(moves[0] / values[0]) / (moves[1] / values[1])  # of the second, where the first has 1
-    nearest = min(EXPONENTS, key=lambda ratio: abs(ratio - power))
+    nearest = min(SIMPLE_EXPONENTS, key=lambda ratio: abs(ratio - power))
     whole = abs(nearest - power) <= EXPONENT_TOLERANCE * abs(nearest)
     if units[0] == units[1] and not (whole and nearest < 0.0):
         factor = -moves[0] / moves[1]

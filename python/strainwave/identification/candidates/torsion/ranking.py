@@ -23,7 +23,7 @@ from strainwave.identification.candidates.torsion.candidate import (
     with_drift,
 )
 from strainwave.identification.candidates.torsion.dissipation import WHOLE, WITH_A_SPRING, Dissipation
-from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Negligible, SpringKind
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN_SPRINGS, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.statistics.residuals import correlation_length
@@ -116,14 +116,14 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
     tried = _TriedCandidates(loop, gear)
     dissipation = asked(loop, gear, friction_measured)
     for each in dissipation:
-        tried.add(PLAIN, [each])
+        tried.add(PLAIN_SPRINGS, [each])
     tried.drift()
     tried.add([Backlash(LINEAR), behind_play(tried.best.spring)], [tried.best.dissipation])
     if not loop.single_branch:
         tried.add([tried.best.spring], WITH_A_SPRING)
         tried.add([Negligible()], WHOLE)
         if not tried.best.dissipation.whole_spring:
-            tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.dissipation])
+            tried.add([*PLAIN_SPRINGS, behind_play(tried.best.spring)], [tried.best.dissipation])
         tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
