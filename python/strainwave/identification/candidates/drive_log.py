@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
 MAX_STEPS_AT_FIRST = 40_000  # of the simulation; the beginning of a longer log is fitted first, which saves time
-MAX_ROUNDS = 4  # of fits, in which breakaway follows Coulomb's torque
+MAX_BREAKAWAY_ROUNDS = 4  # of fits, in which breakaway follows Coulomb's torque
 BREAKAWAY_TOLERANCE = 1e-3  # relative, between breakaway and the torque that it follows
 MAX_HALVINGS = 12  # of a friction that the command does not overcome
 MAX_SLOPE = 0.1  # of each harmonic over that of the rigid motion: no gear has a larger one (assumed)
@@ -61,7 +61,7 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
     is_long = log.time[-1] > MAX_STEPS_AT_FIRST * log.dt
     near = fit(drive, log.beginning(MAX_STEPS_AT_FIRST / 2 * log.dt), free).model if is_long else drive
     log_fit = fit(near, log, free, training=training)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(MAX_BREAKAWAY_ROUNDS):
         law, wanted = log_fit.gear.friction_input, _breakaway(log_fit.gear, drive.gear)
         if wanted is None or abs(innermost(law).breakaway - wanted) <= BREAKAWAY_TOLERANCE * wanted:
             break

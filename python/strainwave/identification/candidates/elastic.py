@@ -42,7 +42,7 @@ from strainwave.identification.experiments.drive_log import MAX_DRIVEN_CUTOFF_SH
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import motion_of, spectra
 from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, transmitted_torque
-from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
+from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
@@ -55,14 +55,13 @@ Array = NDArray[np.float64]
 TIME_BLOCKS = 10  # of a log, every second of which is held out while models are compared
 COMPARED_TIME = 10.0  # s, of the part of a log on which models are compared
 MAX_TIME = 40.0  # s, of a log to which the chosen model is fitted
-MAX_STEP = 1e-3  # s, of the simulation
+MAX_STEP_OF_OUTPUT = 1e-3  # s, of the simulation
 MAX_PHASE_STEP = 0.25  # rad, of the vibration of the output in a step, which changes its period by 3e-5 (RK4)
 MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
-MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
-MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
-MAX_TRIALS = 15  # steps of a fit
+MAX_RELATIVE_COST_AT_LAST = 1e-4  # of a step of the last fit: smaller steps move no number by a tenth of its deviation
+MAX_STEPS_OF_FIT = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
-GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
+HELD_OUT_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
 MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more are an error of the model
 SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
@@ -77,9 +76,9 @@ FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at z
 WAVE_PATHS = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 Rows = NDArray[np.bool_]
 
-MAX_ELEMENTS = 2
+MAX_ELASTIC_ELEMENTS = 2
 TRIED_SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
-MAX_ROWS = 3000  # of the regression
+MAX_ROWS_OF_REGRESSION = 3000  # of the regression
 MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
 UNREACHED_TORQUE = 1e6  # N.m: a knee there does nothing
 MIN_TORQUE_SHARE = 2e-3  # of the largest torque: an element that carries less is none
@@ -195,7 +194,7 @@ def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bo
     """
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
-    step = min(MAX_STEP, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
+    step = min(MAX_STEP_OF_OUTPUT, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
     torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
     output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
     initial = {"torque": torque, "output_speed": float(output.speed[0])}
@@ -251,7 +250,7 @@ class _TriedModel(ComparedByFields):
 
     def predicts_as_well_as(self, other: _TriedModel) -> bool:
         """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
-        losses = np.array([each.mean() for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)])
+        losses = np.array([each.mean() for each in np.array_split(self.left**2 - other.left**2, HELD_OUT_BLOCKS)])
         by_chance = self.error <= MAX_CHANCE_ERROR * other.error and sigmas_of_gain(losses) < MIN_GAIN_SIGMA
         return MAX_RELATIVE_ERROR * self.error <= other.error or by_chance
 
@@ -349,7 +348,7 @@ def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel
     """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
-        problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+        problem, x = _solved(log, drive, free, training, ROUGH_TOLERANCE)
         fitted: Any = problem.records[0].model(x)
         ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
@@ -373,7 +372,7 @@ def _solved(
 ) -> tuple[Problem, Array]:
     """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it."""
     problem = problem_of(plan(drive, [""], free), drive, [log], [training])
-    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_TRIALS)
+    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_STEPS_OF_FIT)
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
@@ -432,11 +431,11 @@ def elastic_starts(
     always = np.column_stack([rate, *scaled, *(-each for each in scaled)])
     needed = torque + load * (acceleration - motion.acceleration / ratio)
     rows = np.flatnonzero(used)
-    rows = rows[:: -(-len(rows) // MAX_ROWS)]
+    rows = rows[:: -(-len(rows) // MAX_ROWS_OF_REGRESSION)]
     training = blocks[rows]
     memory = np.column_stack(unit_traces(twist, half * TRIED_SLIPS))
     starts = []
-    for count in range(MAX_ELEMENTS + 1):
+    for count in range(MAX_ELASTIC_ELEMENTS + 1):
         elements = _elements(memory[rows], half, count)
         for spring in TRIED_SPRINGS:
             libraries = [elements, spring.library(twist[rows], half, drive.gear)]

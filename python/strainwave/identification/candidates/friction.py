@@ -37,9 +37,9 @@ MIN_OUTLIER_SIGMA = 6.0  # robust standard deviations off, beyond noise
 MIN_ROWS_FOR_OUTLIERS = 12
 MAX_OUTLIER_SHARE = 0.1  # of the rows
 MAX_ERROR_LEFT = 0.5  # of the error, without the outliers
-MAX_PASSES = 3  # as outliers hide behind larger ones
+MAX_OUTLIER_PASSES = 3  # as outliers hide behind larger ones
 MAX_ROUNDING = 1e-7  # of the largest torque: smaller errors are those of rounding and of the end of a fit
-MAX_CHANCE = 0.01  # probability that chance explains as much as more numbers do
+MAX_CHANCE_OF_NUMBERS = 0.01  # probability that chance explains as much as more numbers do
 MAX_RELATIVE_SIGMA = 0.5  # of a number that a law determines
 STEADY_NUMBERS = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # mean the same in every law
 
@@ -225,7 +225,7 @@ def _without_outliers(table: FrictionTable, gear: Gear) -> tuple[list[tuple[Shap
     """Return every law fitted to the rows without outliers, and these rows; to all if that does not halve the error."""
     whole = tried = _tried(table, gear)
     everything = trusted = np.ones(len(table.speed), bool)
-    for _ in range(MAX_PASSES):
+    for _ in range(MAX_OUTLIER_PASSES):
         _, best = _chosen(tried)
         kept = trusted.copy()
         kept[np.flatnonzero(trusted)[outliers(table.torque[trusted] - best.held_out)]] = False
@@ -284,7 +284,7 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
         within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
         more = best.parameters - candidate.parameters
         before, left = candidate.fit.residuals[0], best.fit.residuals[0]
-        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE)
+        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE_OF_NUMBERS)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
 

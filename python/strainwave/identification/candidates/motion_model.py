@@ -41,7 +41,7 @@ MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
 MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
 BIAS_IN_FULL_BAND = 0.05  # of a wave: what numbers by the pass band and a smoothed angle make of it (assumed)
-MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
+MAX_CHANCE_OF_WAVE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
 NUMBERS_OF_WAVE = {  # of `friction.Cyclic`
     "friction": ("order", "amplitude", "phase"),
     "detent": ("detent_order", "detent_torque", "detent_phase"),
@@ -350,7 +350,7 @@ def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> dic
             break
         freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(left_by[best])
         gain = chance_of_gain(float(rest @ rest), float(left_by[best] @ left_by[best]), 2, freedom)
-        if len(pairs) * gain > MAX_CHANCE:
+        if len(pairs) * gain > MAX_CHANCE_OF_WAVE:
             break
         chosen.append(best)
         columns, rest = np.column_stack([columns, white[best]]), left_by[best]

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
 HELD_OUT = ", held out"  # behind the name of an error
-ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of the channels
+ROUGH_TOLERANCE = 1e-3  # likewise, of fits that are compared, and of passes that determine the weights of the channels
 REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
 MAX_ROUGH_PASSES = 4  # of one step each, after the first
-MAX_PASSES = 5  # exact ones
+MAX_EXACT_PASSES = 5  # exact ones
 MAX_START_SIGMA = 3.0  # standard deviations of a prior: an unknown that ended farther off starts at the prior
 MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
 MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
@@ -428,7 +428,7 @@ def solved_from(problem: Problem, x: Array) -> Fit:
             if _change(before, weights) < MAX_WEIGHT_CHANGE:
                 break
             x = problem.solve(x, weights, ROUGH_TOLERANCE, trials=2)  # where it stands, and one step
-    for _ in range(1 if alone else MAX_PASSES):
+    for _ in range(1 if alone else MAX_EXACT_PASSES):
         before, x = weights, problem.solve(x, weights, EXACT_TOLERANCE)
         weights = problem.weights(x, before)
         if _change(before, weights) < MAX_WEIGHT_CHANGE:

@@ -33,11 +33,11 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.identification.fitting.unknowns import Estimate
 
-FITTED_SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 Array = NDArray[np.float64]
+FITTED_SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 MAX_SLIP = 0.9  # of half the span: a loop does not separate an element that slips later from a spring
 MIN_SLIP_RATIO = 1.1  # of two slip twists; elements that are closer are one
-MAX_ROUNDS = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
+MAX_ROUNDS_OF_LEAVING_OUT = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
 MAX_MINIMA = 6  # of one kind that are fitted
 MIN_ZERO_DISTANCE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
 DRIFT_NAMES = ("torque_drift", "twist_drift")
@@ -283,7 +283,7 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     half, span = half_span(loop), float(np.ptp(loop.torque))
     least = half * (TRIED_SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING_SHARE)
     stiff: set[int] = set()
-    for last in [*(MAX_ROUNDS - 1) * [False], True]:
+    for last in [*(MAX_ROUNDS_OF_LEAVING_OUT - 1) * [False], True]:
         free = spring.free(gear) + dissipation.free(gear, stiff)
         refined = fit(gear, loop, free, training=training)
         ordered = spring.in_order(refined.gear.stiffness)

@@ -29,15 +29,15 @@ from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.statistics.residuals import correlation_length
 
 LOOP_BLOCKS = 20  # of the samples of a loop
-FOLD_COUNT = 4  # each of every fourth block
+LOOP_FOLDS = 4  # each of every fourth block
 Array = NDArray[np.float64]
 MIN_EXCESS = 0.01  # of the error of the best: a smaller difference is none
-MAX_MINIMA = 2  # of one kind that are fitted: there are many kinds
+MAX_RANKED_MINIMA = 2  # of one kind that are fitted: there are many kinds
 MAX_RESIDUAL_FACTOR = 1.25  # over the residuals of the best: models that leave more are judged by one fold
 TIMED_RUNS = 5  # of a law, of which the shortest counts
 
 
-def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
+def held_out_blocks(n: int, fold: int = LOOP_FOLDS - 1) -> NDArray[np.bool_]:
     """Return True for samples that train: all but every fourth of twenty blocks, which are held out to validate.
 
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other. The four folds hold out
@@ -46,7 +46,7 @@ def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
     >>> [int((~held_out_blocks(40, fold)).sum()) for fold in range(4)]
     [10, 10, 10, 10]
     """
-    training: NDArray[np.bool_] = block_of(n) % FOLD_COUNT != fold
+    training: NDArray[np.bool_] = block_of(n) % LOOP_FOLDS != fold
     return training
 
 
@@ -127,7 +127,7 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
         tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
-    judged = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
+    judged = [_judged(each, LOOP_FOLDS if _left(each) < near else 1) for each in candidates]
     return _ordered([each for each in judged if each is not None])
 
 
@@ -146,7 +146,7 @@ class _TriedCandidates:
                     continue
                 try:
                     with _trying():
-                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
+                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_RANKED_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
                 self._found[spring, dissipation] = fitted
