@@ -403,7 +403,12 @@ def problem_of(
     """Return the least squares of unknowns on experiments, with the model before the fit and the samples that take part."""
     first, built = len(asked.unknowns), []
     for experiment, mask, own, links in zip(experiments, masks, _models(model, asked), asked.links, strict=True):
-        _check_branch(experiment, [link.path for link in links])
+        wrong = [link.path for link in links if not link.path.removeprefix("gear.").startswith("stiffness.")]
+        if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
+            raise ValueError(
+                f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from "
+                "stiffness; free parameters of the stiffness alone, or measure a loop that loads and unloads"
+            )
         of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
         built.append(FitRecord(experiment, mask, own, links, of_gear, first))
         first = built[-1].nuisances.stop
@@ -483,16 +488,6 @@ def _masks(training: Any, names: list[str]) -> list[Mask]:
     if not isinstance(training, list | tuple) or len(training) != len(names):
         raise ValueError(f"training must be a list with one mask or None for each of the {len(names)} records")
     return list(training)
-
-
-def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
-    """Raise ValueError for hysteresis of a path that never turns back: it is not separated from the spring."""
-    wrong = [path for path in paths if not path.removeprefix("gear.").startswith("stiffness.")]
-    if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
-        raise ValueError(
-            f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from stiffness; "
-            "free parameters of the stiffness alone, or measure a loop that loads and unloads"
-        )
 
 
 def experiment_of(
