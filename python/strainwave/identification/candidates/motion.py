@@ -18,12 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, friction, loads
-from strainwave.identification.candidates.motion_candidate import (
-    GRAVITY_PATHS,
-    MAX_ERROR,
-    MotionCandidate,
-    candidate_of,
-)
+from strainwave.identification.candidates.motion_candidate import GRAVITY_PATHS, MAX_ERROR, MotionCandidate, candidate_of
 from strainwave.identification.candidates.motion_model import (
     BREAKAWAY_FOLLOWS,
     INPUT,

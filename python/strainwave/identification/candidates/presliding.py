@@ -456,14 +456,7 @@ def _solved(predict: Predict, start: Array, torque: Array, chosen: NDArray[np.bo
     def jacobian(x: Array) -> Array:
         return np.asarray(_slopes(predict, x)[chosen])
 
-    solution = least_squares(
-        residuals,
-        start,
-        jac=jacobian,
-        bounds=(low, np.inf),
-        x_scale="jac",
-        max_nfev=trials,
-    )
+    solution = least_squares(residuals, start, jac=jacobian, bounds=(low, np.inf), x_scale="jac", max_nfev=trials)
     return np.asarray(solution.x, float)
 
 

@@ -91,10 +91,7 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
     speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
     fastest = float(speed.max())
     grid = list(
-        product(
-            np.geomspace(speed.min(), fastest, STRIBECK_GRID) if falls else (fastest,),
-            EXPONENT_GRID if curved else (1.0,),
-        )
+        product(np.geomspace(speed.min(), fastest, STRIBECK_GRID) if falls else (fastest,), EXPONENT_GRID if curved else (1.0,))
     )
     shapes = [
         np.stack([np.ones_like(speed), (speed / fastest) ** p, *([np.exp(-((speed / v_s) ** 2))] if falls else [])], axis=1)
