@@ -29,7 +29,7 @@ from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
-from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.reading.source import BAG_FILE, Measurement, MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine
@@ -403,7 +403,7 @@ def read_measurements(
 
 def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
     path = file.path
-    if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
+    if file.recording is None and path.is_dir() and not Path(path, BAG_FILE).is_file():
         known = listed(f"*{suffix}" for suffix in FORMATS)
         return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {known}")
     if file.recording is None and (other := other_format(path)):

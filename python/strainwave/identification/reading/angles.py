@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 MIN_WRAP = 0.75  # of a revolution: a larger jump is a wrap
-MAX_STEP = 0.5  # of a revolution: larger steps that are no wrap leave the direction open
+MAX_CLEAR_STEP = 0.5  # of a revolution: larger steps that are no wrap leave the direction open
 MIN_SHARE_OF_WRAPS = 0.9  # of the steps by more than half a revolution, of an angle that wraps
 MAX_RANGE = 1.01  # revolutions: an angle that covers more does not wrap
 MIN_JUMP = 0.01  # of the range of an angle: smaller steps are none from one recording to another
@@ -17,7 +17,7 @@ MIN_FACTOR_OF_JUMP = 5.0  # of the fastest motion, and of the neighbouring steps
 MAX_JUMPS = 10  # of a record: the fastest motion is that of the rows after these
 MIN_HELD = 3  # rows with one value
 MIN_CHANGES = 20  # of the value
-MIN_STEPS = 3.0  # smallest steps: an encoder that moves further between renewals is not waiting for its next step
+MIN_STEPS_OF_MOTION = 3.0  # smallest steps: an encoder that moves further between renewals is not waiting for its next step
 MAX_JITTER = 1  # rows by which most renewals come early or late
 MIN_REGULAR = 0.8  # of the renewals
 
@@ -39,7 +39,7 @@ def unwrapped(angle: Array, period: float = 2.0 * np.pi) -> tuple[Array, int]:
     (array([350., 358., 366., 358.]), 2)
     """
     steps = np.diff(angle)
-    large = np.abs(steps) > MAX_STEP * period
+    large = np.abs(steps) > MAX_CLEAR_STEP * period
     if not large.any() or not MIN_WRAP * period < np.ptp(angle) <= MAX_RANGE * period:
         return angle, 0
     whole = np.abs(steps) > MIN_WRAP * period
@@ -96,7 +96,7 @@ def renewed_rows(angle: Array) -> tuple[Rows, int] | None:
     if len(changes) < MIN_CHANGES:
         return None
     sizes = np.abs(steps[changes - 1])
-    fast = np.flatnonzero(sizes[1:] > MIN_STEPS * np.quantile(sizes, 0.01)) + 1
+    fast = np.flatnonzero(sizes[1:] > MIN_STEPS_OF_MOTION * np.quantile(sizes, 0.01)) + 1
     if len(fast) < MIN_CHANGES:
         return None
     intervals = changes[fast] - changes[fast - 1]

@@ -60,4 +60,5 @@ CHANNELS: dict[str, Channel] = {
     "speed": Channel("speed"),
     "angle": Channel("angle"),
 }
-ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}  # other names that people may give
+# Other names that people may give.
+CHANNEL_ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}

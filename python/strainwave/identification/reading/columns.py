@@ -12,7 +12,7 @@ import numpy as np
 from strainwave.files.labels import ColumnSource, places_of
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import measures
-from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
+from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import (
@@ -30,13 +30,13 @@ from strainwave.messages import listed, one_line, quoted
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 
 MAX_JOINTS_OFFERED = 8  # by a question: more than an arm has are a humanoid's
-MIN_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
-SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
-EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
-MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
-EFFORTS = ("torque", "current")  # quantities
+MIN_SHARE_OF_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
+LISTED_CHANNELS = ("other_angles", "regressors")  # channels that may be several columns
+EITHER_QUANTITY = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
+MEASURED_WORDS = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
+EFFORT_KINDS = ("torque", "current")  # quantities
 USUAL_FIRST = ("time", "temperature", "vibration")  # of which the first column is taken, if a file has several
-CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
+CURRENT_WORDS, TORQUE_WORDS = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
 
 
 def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[str]]:
@@ -51,7 +51,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
     named = _of_one_time(_by_name(table, mapping, by_user))
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
     found = by_user + _of_one_joint(table, own, mapping, by_user)
-    is_stated = any(column.channel.quantity in EFFORTS for column in by_user)
+    is_stated = any(column.channel.quantity in EFFORT_KINDS for column in by_user)
     names = set[str]() if is_stated else {column.name for column in found}
     return found, [remark for name, remark in remarks.items() if name in names]
 
@@ -59,7 +59,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
 def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
     """Return the joints whose angles change, of a file with several of which a person named none."""
     spans = spans_of_joints(table, mapping)
-    least = MIN_MOTION * max(spans.values(), default=0.0)
+    least = MIN_SHARE_OF_MOTION * max(spans.values(), default=0.0)
     return [which for which, span in spans.items() if span > 0.0 and span >= least]
 
 
@@ -125,7 +125,7 @@ def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:
     """Return the columns; of a channel in several structures those of the ones with measured values, as `rec.act_pos`."""
     structures = [re.sub(r"\d+", "", column.name.rpartition(".")[0]) for column in columns]
     pairs = list(zip(columns, structures, strict=True))
-    measured = {structure for column, structure in pairs if set(words_of(column.name)) & MEASURED}
+    measured = {structure for column, structure in pairs if set(words_of(column.name)) & MEASURED_WORDS}
     channels = {column.channel for column, structure in pairs if structure in measured}
     return [column for column, structure in pairs if structure in measured or column.channel not in channels]
 
@@ -157,7 +157,7 @@ def _of_one_time(columns: Sequence[Column]) -> list[Column]:
 
 def _beside(by_user: Sequence[Column], named: Sequence[Column]) -> list[Column]:
     """Return the named columns, without those of several joints whose channel or a like one a person named."""
-    taken = {group for group in EXCHANGEABLE for column in by_user if column.channel.quantity in group and column.own}
+    taken = {group for group in EITHER_QUANTITY for column in by_user if column.channel.quantity in group and column.own}
     quantities = {quantity for group in taken for quantity in group}
     channels = [column.channel for column in named]
     return [each for each in named if each.channel.quantity not in quantities or channels.count(each.channel) == 1]
@@ -169,13 +169,15 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
     The torque of the motor contains the friction of the gear, that of a sensor behind the gear does not. So a torque from the
     current goes before a current, and this before any other torque.
     """
-    efforts = [each for each in columns if each.channel.quantity in EFFORTS and each.channel.measured]
+    efforts = [each for each in columns if each.channel.quantity in EFFORT_KINDS and each.channel.measured]
     efforts = [each for each in efforts if each.channel.side is None and each.own and not each.by_user]
     taken, remarks = list(columns), dict[str, str]()
     for joint in dict.fromkeys(column.which for column in efforts):
         several = [column for column in efforts if column.which == joint]
         words = {column.position: set(words_of(column.name)) for column in several}
-        from_current = [each for each in several if words[each.position] & CURRENT and words[each.position] & TORQUE]
+        from_current = [
+            each for each in several if words[each.position] & CURRENT_WORDS and words[each.position] & TORQUE_WORDS
+        ]
         others = [column for column in several if column not in from_current]
         currents = [column for column in others if column.channel.quantity == "current"]
         first = from_current if from_current and others else currents if len(others) - len(currents) > 1 else []
@@ -202,10 +204,12 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
         QuestionError: it has one for each joint
     """
     found = []
-    wanted = [(name, each) for name, each in mapping.columns.items() if name not in SEVERAL]
-    wanted += [(name, each.strip()) for name in SEVERAL for each in mapping.columns.get(name, "").split(",") if each.strip()]
+    wanted = [(name, each) for name, each in mapping.columns.items() if name not in LISTED_CHANNELS]
+    wanted += [
+        (name, each.strip()) for name in LISTED_CHANNELS for each in mapping.columns.get(name, "").split(",") if each.strip()
+    ]
     for name, column in wanted:
-        place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[ALIASES.get(name, name)]
+        place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[CHANNEL_ALIASES.get(name, name)]
         label, by_name = table.labels[place], meaning(table.labels[place])
         by_name_unit = by_name.unit if by_name and by_name.quantity == channel.quantity else None
         unit = label.unit or by_name_unit or unit_in(label.name, channel.quantity)

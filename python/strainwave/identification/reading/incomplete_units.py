@@ -14,10 +14,10 @@ from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.messages import listed, one_line
 from strainwave.questions import Answer, QuestionError
 
-COUNTED = "counts/16384"  # for example
-RATIOS = (100.0, 50.0, 80.0, 120.0, 160.0, 30.0)  # of catalogues, the most usual first
-MIN_COUNTS = 1000  # range of whole numbers that are counts of an encoder
-MIN_STEPS, MIN_SAMPLES = 20, 100  # range and rows of whole numbers that are shares of a rated torque
+COUNTS_EXAMPLE = "counts/16384"  # for example
+USUAL_RATIOS = (100.0, 50.0, 80.0, 120.0, 160.0, 30.0)  # of catalogues, the most usual first
+MIN_RANGE_OF_COUNTS = 1000  # range of whole numbers that are counts of an encoder
+MIN_RANGE_OF_SHARES, MIN_ROWS_OF_SHARES = 20, 100  # range and rows of whole numbers that are shares of a rated torque
 MAX_OFF_COUNTS = 3e-3  # relative difference of the counts of a revolution from a usual number
 
 
@@ -55,7 +55,7 @@ def check_units(columns: Sequence[Column], ratio: float | None) -> None:
     whys = list[str]()
     for column in counted:
         name = column.label.name
-        if needs[name] == COUNTED and (found := _counts_by_joint(column, columns, ratio)) is not None:
+        if needs[name] == COUNTS_EXAMPLE and (found := _counts_by_joint(column, columns, ratio)) is not None:
             needs[name], why = f"counts/{found[0]}", found[1]
             whys.append(why)
             del numbers[name]
@@ -83,7 +83,7 @@ def _counts_by_joint(column: Column, columns: Sequence[Column], ratio: float | N
     if not np.ptp(turns[there]) > 0.0:
         return None
     per_turn = abs(float(np.polyfit(turns[there], counted[there], 1)[0]))
-    for each in RATIOS if ratio is None else (abs(ratio),):
+    for each in USUAL_RATIOS if ratio is None else (abs(ratio),):
         if bits := bits_of(per_turn / each, MAX_OFF_COUNTS):
             return 2**bits, f"{2**bits} at a ratio of {each:g}, as {joint.name} turns once in {per_turn:.6g} counts"
     return None
@@ -95,12 +95,12 @@ def _incomplete_unit(column: Column) -> str:
     if column.unit is not None:
         if is_share(column.unit):
             return share.replace("permille", "%") if column.unit.strip() in ("%", "percent") else share
-        counted = f"{COUNTED}/s" if column.channel.quantity == "speed" else COUNTED
+        counted = f"{COUNTS_EXAMPLE}/s" if column.channel.quantity == "speed" else COUNTS_EXAMPLE
         return counted if counts(column.unit) and not measures(column.unit, column.channel.unit) else ""
     values = column.raw[np.isfinite(column.raw)]
     if len(values) < 2 or not (values == np.round(values)).all():
         return ""
     if column.channel.quantity == "angle":
-        return COUNTED if np.ptp(values) > MIN_COUNTS else ""
+        return COUNTS_EXAMPLE if np.ptp(values) > MIN_RANGE_OF_COUNTS else ""
     is_torque = column.channel.quantity == "torque" and column.channel.measured
-    return share if is_torque and len(values) > MIN_SAMPLES and np.ptp(values) >= MIN_STEPS else ""
+    return share if is_torque and len(values) > MIN_ROWS_OF_SHARES and np.ptp(values) >= MIN_RANGE_OF_SHARES else ""

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from strainwave.files.labels import ColumnSource
 from strainwave.files.table_format import OpenTable
 from strainwave.identification.reading.names import QUANTITY_OF, meaning, words_of
-from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS, correlation
+from strainwave.identification.reading.slopes import MIN_CORRELATION, PARTS_OF_RECORD, correlation
 from strainwave.messages import listed
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
@@ -199,7 +199,7 @@ def _may_be_measured(values: Array) -> bool:
 def _speeds(columns: Mapping[int, Array], time: Array) -> list[tuple[int, int]]:
     """Return angles and the speeds that are their slopes, the angles that move most first."""
     found = dict[int, int]()
-    for parts in PARTS:
+    for parts in PARTS_OF_RECORD:
         for angle in columns.keys() - found.keys():
             others = [place for place in columns if place != angle]
             alike = {place: correlation(columns[angle], columns[place], time, parts) for place in others}

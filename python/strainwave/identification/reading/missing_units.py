@@ -19,10 +19,11 @@ from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
-ANGLES = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0}  # units, and a revolution in each
-SPEEDS = ("rad/s", "deg/s", "rpm")
-EPOCHS = ((1e18, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
-RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)  # Hz, usual
+ANGLE_UNITS = {"rad": 2.0 * np.pi, "deg": 360.0, "rev": 1.0}  # units, and a revolution in each
+SPEED_UNITS = ("rad/s", "deg/s", "rpm")
+EPOCH_UNITS = ((1e18, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))  # smallest time since 1970 in each unit
+# Hz, usual.
+USUAL_RATES = (50.0, 100.0, 125.0, 200.0, 250.0, 400.0, 500.0, 800.0, 2000.0, 2500.0, 4000.0, 5000.0, 8000.0, 10_000.0)
 MIN_BITS, MAX_BITS = 6, 40  # of an encoder
 MAX_OFF_RATE = 0.03  # relative difference of the rate of rows from a usual one
 MAX_OFF_EXACT_SPEED = 0.02  # relative difference of a speed from the slope of its angle, in the right units
@@ -83,12 +84,12 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
     known = {speed.position for angle, speed in pairs_of_shafts(columns) if angle.sure}
     speeds = [c for c in columns if not c.sure and c.channel.quantity == "speed" and c.position not in known]
     if not angles:
-        units = [unit for unit in SPEEDS if speeds and unit != speeds[0].unit]
+        units = [unit for unit in SPEED_UNITS if speeds and unit != speeds[0].unit]
         return [{speed.position: unit for speed in speeds} for unit in units]
     if any(angle in angles and speed.sure for angle, speed in pairs_of_shafts(columns)):
         return []
     found = []
-    for unit in ANGLES:
+    for unit in ANGLE_UNITS:
         factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
         units_of_speeds = [_unit_of_size(factor * convert(1.0, str(speed.unit), "rad/s")) for speed in speeds]
         if unit == angles[0].unit or None in units_of_speeds or not all(_may_move(angle, factor) for angle in angles):
@@ -117,7 +118,7 @@ def _may_move(angle: Column, factor: float) -> bool:
 
 def _unit_of_size(size: float) -> str | None:
     """Return the unit of a speed by its size [rad/s]; None if none has it."""
-    sizes = {unit: convert(1.0, unit, "rad/s") for unit in (*SPEEDS, "rev/s")}
+    sizes = {unit: convert(1.0, unit, "rad/s") for unit in (*SPEED_UNITS, "rev/s")}
     return next((unit for unit, each in sizes.items() if abs(size / each - 1.0) < MAX_OFF_STEP), None)
 
 
@@ -141,7 +142,7 @@ def _by_itself(column: Column, columns: Sequence[Column]) -> Assumed:
 def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assumed:
     """Return the unit of stamps: by their size since 1970, by a step of a log, or by an angle and its speed in usual units."""
     latest = float(np.abs(values).max(initial=0.0))
-    if unit := next((unit for least, unit in EPOCHS if latest > least), None):
+    if unit := next((unit for least, unit in EPOCH_UNITS if latest > least), None):
         return Assumed(unit, "since 1970")
     if len(values) > 1 and np.median(np.abs(np.diff(values))) < MAX_STEP_OF_LOG:
         return Assumed("s")
@@ -152,7 +153,7 @@ def _of_time(column: Column, values: Array, columns: Sequence[Column]) -> Assume
             if _fitting(slope * convert(1.0, unit, "s"), angle.unit, speed.unit):
                 return Assumed(unit, f"as {then}")
         expected = convert(1.0, f"{angle.unit or UNITS['angle']}/s", speed.unit or UNITS["speed"])
-        for rate in RATES if counts_rows else ():
+        for rate in USUAL_RATES if counts_rows else ():
             if abs(slope / rate / expected - 1.0) < MAX_OFF_RATE:
                 return Assumed("s", f"as it counts rows at {rate:g} Hz: {then}", scale=1.0 / rate)
     lasted = float(np.ptp(values)) if len(values) else 0.0
@@ -170,7 +171,7 @@ def _of_angle(column: Column, values: Array) -> Assumed:
     """Return radians, unless the steps of an encoder or the range of a joint determine another unit."""
     step = smallest_step(values)
     for unit in ("deg", "rad", "rev"):
-        if step and (bits := bits_of(ANGLES[unit] / step, MAX_OFF_STEP)):
+        if step and (bits := bits_of(ANGLE_UNITS[unit] / step, MAX_OFF_STEP)):
             return Assumed(unit, f"as its steps are those of an encoder of {bits} bits", True)
     if column.at_joint and np.abs(values).max() > MAX_JOINT_ANGLE:
         return Assumed("deg", f"as a joint does not reach {np.abs(values).max():.4g} rad")
@@ -208,8 +209,8 @@ def _fitting(slope: float, angle: str | None, speed: str | None) -> list[tuple[s
     """
     pairs = [
         (one, other)
-        for one in (ANGLES if angle is None else (angle,))
-        for other in ((speed,) if speed is not None else SPEEDS if one != "rev" else ("rev/s", *SPEEDS))
+        for one in (ANGLE_UNITS if angle is None else (angle,))
+        for other in ((speed,) if speed is not None else SPEED_UNITS if one != "rev" else ("rev/s", *SPEED_UNITS))
     ]
     off = {pair: abs(slope / convert(1.0, f"{pair[0]}/s", pair[1]) - 1.0) for pair in pairs}
     return sorted((pair for pair in pairs if off[pair] < MAX_OFF_SPEED), key=lambda pair: off[pair] > MAX_OFF_EXACT_SPEED)

@@ -18,7 +18,7 @@ from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
-from strainwave.identification.reading.channels import ALIASES, CHANNELS
+from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS
 from strainwave.identification.reading.clock import clock, regular
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import (
@@ -46,11 +46,12 @@ Array = NDArray[np.float64]
 
 MAX_ANSWERS = 18  # of one question: two for each of eight joints, and for all
 MAX_ANSWERS_OF_JOINTS = 9  # of a question about more than the joint; beyond, the answers of one joint are shown
-MIN_MOTION = 0.02  # rad: another joint that moves by less rests
-RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
-STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
-SINGLES = "single numbers, not used: "
-REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
+MIN_NEIGHBOUR_MOTION = 0.02  # rad: another joint that moves by less rests
+# Hz.
+RATE_NAMES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")
+STEP_NAMES = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
+UNUSED_NUMBERS = "single numbers, not used: "
+OF_REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
 
 
 @dataclass(frozen=True)
@@ -110,11 +111,11 @@ class Recognised(Presented):
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
         recording = self.recording
-        if not REFLECTED.keys() & set(recording.names):
+        if not OF_REFLECTED.keys() & set(recording.names):
             return self
-        names = sorted(recording.names, key=lambda name: name in REFLECTED)
-        series = {REFLECTED.get(name, name): recording[name] * (ratio if name in REFLECTED else 1.0) for name in names}
-        units = {REFLECTED.get(name, name): recording.unit(name) for name in names}
+        names = sorted(recording.names, key=lambda name: name in OF_REFLECTED)
+        series = {OF_REFLECTED.get(name, name): recording[name] * (ratio if name in OF_REFLECTED else 1.0) for name in names}
+        units = {OF_REFLECTED.get(name, name): recording.unit(name) for name in names}
         return replace(self, recording=Recording(series, units, recording.title))
 
 
@@ -273,7 +274,11 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
     except ValueError as error:
         raise ValueError(one_line(f"{table.file}: {error}")) from None
     unused = _unused(table, list(used.values()))
-    left_out = (*table.left_out, *(each for each in of_file if each.startswith(SINGLES)), *_of_unused(unused.values()))
+    left_out = (
+        *table.left_out,
+        *(each for each in of_file if each.startswith(UNUSED_NUMBERS)),
+        *_of_unused(unused.values()),
+    )
     return Recognised(
         source.path,
         roles.kind,
@@ -323,7 +328,7 @@ def _beside(columns: Sequence[Column], kind: str) -> tuple[dict[str, Column], di
     neighbours = {
         f"angle_of_joint_{column.which}": column
         for column in columns
-        if column.neighbour and kind == "log" and np.ptp(column.si) > MIN_MOTION
+        if column.neighbour and kind == "log" and np.ptp(column.si) > MIN_NEIGHBOUR_MOTION
     }
     return neighbours, {f"regressor {column.name}": column for column in columns if column.regressor}
 
@@ -346,7 +351,7 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
 
 def _other_units(columns: Sequence[Column], roles: Mapping[str, Column]) -> tuple[Answer, ...]:
     """Return other units of the channels without one, if their numbers fit them as well."""
-    names = {each.position: each.name if name in REFLECTED else name for name, each in roles.items()}
+    names = {each.position: each.name if name in OF_REFLECTED else name for name, each in roles.items()}
     ways = []
     for units in other_units([column for column in columns if column.own and column.position in names]):
         by_name = {names[place]: unit for place, unit in units.items()}
@@ -395,7 +400,7 @@ def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
     if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
         together = Answer("the files of the recording together", files=tuple(map(str, others)))
         raise QuestionError("it has one quantity of a recording", [together])
-    named, layout = {CHANNELS[ALIASES.get(name, name)].quantity for name in given.columns}, source.layout
+    named, layout = {CHANNELS[CHANNEL_ALIASES.get(name, name)].quantity for name in given.columns}, source.layout
     if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
         is_timed = "rate" in given.constants or any(label.name == "time" for label in source.table.labels)
         raise layout.question(is_timed=is_timed)
@@ -436,16 +441,16 @@ def _with_single_numbers(table: OpenTable, given: FileMapping) -> tuple[FileMapp
         remarks.append(f"{name} = {singles.pop(name):g} is taken for the rate of its rows: {rate:g} Hz")
         given = given.updated(FileMapping(constants={"rate": rate}))
     if singles:
-        remarks.append(f"{SINGLES}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
+        remarks.append(f"{UNUSED_NUMBERS}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
     return given, remarks
 
 
 def _rate(name: str, value: float) -> float | None:
     """Return the rate of rows [Hz] that a number of this name is; None if it is none."""
     highest = CONSTANTS["rate"].high
-    if name in RATES and 1.0 <= value <= highest:
+    if name in RATE_NAMES and 1.0 <= value <= highest:
         return value
-    return 1.0 / value if name in STEPS and 1.0 / highest <= value < 1.0 else None
+    return 1.0 / value if name in STEP_NAMES and 1.0 / highest <= value < 1.0 else None
 
 
 def _with_speed_of_name(columns: Sequence[Column], given: FileMapping, path: Path) -> tuple[FileMapping, tuple[str, ...]]:

@@ -42,7 +42,7 @@ DYNAMIXEL_X = Registers(
     ("present_current", "mA"),
     "ROBOTIS e-Manual, control table of XM430",
 )
-RECORDERS = (DYNAMIXEL_X,)
+KNOWN_RECORDERS = (DYNAMIXEL_X,)
 # Names of torques of libfranka, whose numbers are in SI units (its reference, RobotState).
 LIBFRANKA_TORQUE = re.compile(r"(\w+\.)?tau_J(_d)?\W*\d*\W*")
 LIBFRANKA_UNITS = {"angle": "rad", "speed": "rad/s", "torque": "N.m"}
@@ -57,7 +57,7 @@ def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
         found = [replace(each, unit=each.unit or LIBFRANKA_UNITS.get(each.channel.quantity)) for each in columns]
         return found, ["columns of libfranka are in rad, rad/s and N·m"]
     time = next((convert(c.raw, c.unit or "s", "s") for c in columns if c.channel.quantity == "time"), None)
-    for known in RECORDERS:
+    for known in KNOWN_RECORDERS:
         own = {column.label.name.casefold(): column for column in columns if column.label.name.casefold() in known.counts}
         if time is None or not {known.angle, known.speed} <= own.keys() or not all(map(_is_raw, own.values())):
             continue

@@ -18,13 +18,13 @@ MIN_MOTOR_SPEED = 60.0  # rad/s, 570 1/min: no output of a strain wave gear is a
 SPEED_QUANTILE = 0.9  # of the time, in which a motor that is recognised by its speed may be slower
 MAX_FACTOR_OF_SIDE = 2.0  # between the median speeds of two channels of one side
 MIN_FACTOR_OF_SIDES = 10.0  # between the ranges of the angles of input and output
-GIVEN = "as was given"  # of a side
+AS_WAS_GIVEN = "as was given"  # of a side
 
 
 def side_of_table(speed: Column, torque: Column, given: Side | None) -> tuple[Side, str]:
     """Return the side at which a table of friction was measured, and what determines it."""
     if given is not None:
-        return given, f"it was measured at the {given}, {GIVEN}"
+        return given, f"it was measured at the {given}, {AS_WAS_GIVEN}"
     if side := speed.channel.side or torque.channel.side:
         return side, f"by its names it was measured at the {side}"
     if speed.robot or torque.robot:
@@ -48,7 +48,7 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
         QuestionError: nothing determines it
     """
     if side := column.channel.side or given:
-        return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
+        return side, "" if column.channel.side else f"{column.name} is at the {side}, {AS_WAS_GIVEN}"
     if column.robot:
         found = meaning(column.label)
         is_word = found is not None and found.robot
@@ -95,7 +95,7 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
         QuestionError: nothing determines it
     """
     if side := column.channel.side or given:
-        return side, "" if column.channel.side else f"{column.name} is at the {side}, {GIVEN}"
+        return side, "" if column.channel.side else f"{column.name} is at the {side}, {AS_WAS_GIVEN}"
     if " of " in (column.unit or ""):
         return "input", f"{column.name} is a share of a rated torque, which is that of the motor"
     if column.robot:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-PARTS = (5000, 200)  # of a record over which slopes are taken, the finest first: encoders have steps
-MAX_STEP = 0.5  # of the range of an angle: a larger one is a revolution begun anew, and has no slope
+PARTS_OF_RECORD = (5000, 200)  # of a record over which slopes are taken, the finest first: encoders have steps
+MAX_SLOPE_STEP = 0.5  # of the range of an angle: a larger one is a revolution begun anew, and has no slope
 MIN_SLOPES = 20  # a correlation of fewer may be chance
 MIN_CORRELATION = 0.95  # of a speed and of the slope of its angle
 MAX_OFF_SPEED = 0.15  # relative difference of a speed from the slope of its angle, in units that fit
@@ -32,7 +32,7 @@ def slopes_and_speeds(angle: Array, speed: Array, time: Array, parts: int) -> tu
         return np.zeros(0), np.zeros(0)
     elapsed, moved = time[apart:] - time[:-apart], angle[apart:] - angle[:-apart]
     middle = speed[apart // 2 : len(speed) - apart + apart // 2]
-    sound = (elapsed > 0.0) & (np.abs(moved) < MAX_STEP * (np.nanmax(angle) - np.nanmin(angle))) & np.isfinite(middle)
+    sound = (elapsed > 0.0) & (np.abs(moved) < MAX_SLOPE_STEP * (np.nanmax(angle) - np.nanmin(angle))) & np.isfinite(middle)
     return moved[sound] / elapsed[sound], middle[sound]
 
 
@@ -48,7 +48,7 @@ def correlation(angle: Array, speed: Array, time: Array, parts: int) -> float:
 @np.errstate(all="ignore")
 def speed_per_slope(angle: Array, speed: Array, time: Array) -> float:
     """Return the speed per unit of the slope of an angle, by least squares; 0 if nothing moves, or they are not related."""
-    for parts in PARTS:
+    for parts in PARTS_OF_RECORD:
         slopes, speeds = slopes_and_speeds(angle, speed, time, parts)
         square, product, largest = slopes @ slopes, slopes @ speeds, speeds @ speeds
         if 0.0 < square < np.inf and product**2 > MIN_EXPLAINED * square * largest:
@@ -61,5 +61,5 @@ def is_slope(speeds: Sequence[Array], angles: Sequence[Array]) -> bool:
     pairs = [
         (angle, speed) for angle, speed in zip(angles, speeds, strict=False) if len(angle) == len(speed) and np.ptp(angle) > 0.0
     ]
-    alike = [correlation(angle, speed, np.arange(len(angle), dtype=float), PARTS[0]) for angle, speed in pairs]
+    alike = [correlation(angle, speed, np.arange(len(angle), dtype=float), PARTS_OF_RECORD[0]) for angle, speed in pairs]
     return bool(alike) and float(np.median(alike)) > MIN_CORRELATION

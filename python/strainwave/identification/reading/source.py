@@ -27,13 +27,13 @@ from strainwave.messages import listed, one_line
 
 Array = NDArray[np.float64]
 
-SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
+QUANTITY_SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
 MAX_PARTS = 20  # files of one recording
-SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
+SETTINGS_SUFFIXES = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
-TEXTS = {".csv", ".txt", ".tsv", ".log"}  # that a recorder may go on writing when it is started again
-DUMPED = "data.log"  # with a count and a stamp in front of each row
-BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
+RESTARTED_SUFFIXES = {".csv", ".txt", ".tsv", ".log"}  # that a recorder may go on writing when it is started again
+DUMPED_FILE = "data.log"  # with a count and a stamp in front of each row
+BAG_FILE = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,9 +171,9 @@ def _parts_needed(own: tuple[str, ...], all_parts: Sequence[tuple[str, ...]]) ->
 
 
 def _below(path: Path) -> FolderFiles:
-    if not path.is_dir() or Path(path, BAG).is_file():
+    if not path.is_dir() or Path(path, BAG_FILE).is_file():
         return FolderFiles([path], [])
-    files, links = files_below(path, FORMATS.keys() - SETTINGS, is_table_of_numbers)
+    files, links = files_below(path, FORMATS.keys() - SETTINGS_SUFFIXES, is_table_of_numbers)
     return FolderFiles(files or ([] if links else [path]), links)
 
 
@@ -184,7 +184,7 @@ def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
 
 def _with_runs(file: MeasurementFile) -> list[MeasurementFile]:
     """Return the recordings in a file: in an array of them, or in a text whose time begins anew."""
-    return file.runs if not file.parts and file.path.suffix.lower() in FILES_OF_RUNS | TEXTS else [file]
+    return file.runs if not file.parts and file.path.suffix.lower() in FILES_OF_RUNS | RESTARTED_SUFFIXES else [file]
 
 
 def _of_kind(kind: str, given: Measurement) -> MeasurementFile:
@@ -245,7 +245,7 @@ def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
 
 def _named(path: Path) -> Path:
     """Return the path whose name states what a file contains: a dumper of YARP writes `data.log` into a folder of each port."""
-    return path.parent if path.name == DUMPED else path
+    return path.parent if path.name == DUMPED_FILE else path
 
 
 def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
@@ -254,7 +254,7 @@ def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
     for place, word in enumerate(words):
         plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
         if plain in QUANTITY_OF or plain in SYMBOLS:
-            is_behind = place + 1 < len(words) and words[place + 1].casefold() in SUFFIXES
+            is_behind = place + 1 < len(words) and words[place + 1].casefold() in QUANTITY_SUFFIXES
             end = place + 1 + is_behind
             return "_".join(words[place:end]), (*words[:place], f"*{number}", *words[end:])
     return None
@@ -307,7 +307,7 @@ class _Part:
         units = [label.unit for label in table.labels]
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None, (), units[:1])
-        if file.path.name == DUMPED and len(series) > 2:
+        if file.path.name == DUMPED_FILE and len(series) > 2:
             return _Part(name, series[2:], series[1])
         if len(series) > 1 and rises_evenly(series[0]):
             return _Part(name, series[1:], series[0], (), units[1:])

@@ -17,8 +17,8 @@ from strainwave.identification.reading.names import meaning, words_of
 
 Array = NDArray[np.float64]
 
-SECONDS = ("s", "sec", "secs", "second", "seconds")
-PARTS = {
+SECOND_WORDS = ("s", "sec", "secs", "second", "seconds")
+SECOND_PARTS = {
     **dict.fromkeys(("ns", "nsec", "nsecs", "nanosec", "nanosecs", "nanosecond", "nanoseconds"), 1e-9),
     **dict.fromkeys(("us", "usec", "usecs", "microsec", "microseconds"), 1e-6),
 }  # s
@@ -26,7 +26,8 @@ FILE_TIMES = (1e17, 1e18)  # of Windows, in tenths of a microsecond since 1601: 
 MIN_PAIRS = 2  # of a time and a channel
 MIN_STEPS_BACK = 10.0  # of a clock that has begun anew
 MIN_ROWS_OF_RUN = 20  # of each recording in a file: shorter ones are hiccups of the clock
-COUNTERS = (2.0**16, 2.0**31, 2.0**32, 86_400.0, 86_400e3)  # after which a counter of a clock, or a time of day, begins anew
+# After which a counter of a clock, or a time of day, begins anew.
+COUNTER_PERIODS = (2.0**16, 2.0**31, 2.0**32, 86_400.0, 86_400e3)
 MAX_STEPS_OF_COUNTER = 3.0  # from the last count to the first one
 
 
@@ -56,10 +57,10 @@ def _with_whole_time(table: OpenTable) -> OpenTable:
     """Return the table with the sum of a column of whole seconds and one of their parts, if it has both."""
     labels, ends = list(table.labels), [_end(label) for label in table.labels]
     for seconds, (before, unit) in enumerate(ends):
-        for part, (start, size) in enumerate(ends) if unit in SECONDS else ():
-            if start == before and size in PARTS and _are_one_time(table, seconds, part, PARTS[size]):
+        for part, (start, size) in enumerate(ends) if unit in SECOND_WORDS else ():
+            if start == before and size in SECOND_PARTS and _are_one_time(table, seconds, part, SECOND_PARTS[size]):
                 labels[seconds] = Label(f"{labels[seconds].text} and {labels[part].text}", "time", "s")
-                return SummedTime(table, labels, seconds, ColumnSource(part, "", "parts of seconds", "1"), PARTS[size])
+                return SummedTime(table, labels, seconds, ColumnSource(part, "", "parts of seconds", "1"), SECOND_PARTS[size])
     return table
 
 
@@ -239,7 +240,7 @@ def run_on(stamps: Array) -> tuple[Array, float]:
     back, forward = steps[steps < 0.0], steps[steps > 0.0]
     if not back.size or not forward.size:
         return stamps, 0.0
-    for period in COUNTERS:
+    for period in COUNTER_PERIODS:
         if (period + back > 0.0).all() and (period + back <= MAX_STEPS_OF_COUNTER * np.median(forward)).all():
             return stamps + period * np.concatenate([[0.0], np.cumsum(steps < 0.0)]), period
     return stamps, 0.0

@@ -20,12 +20,15 @@ Array = NDArray[np.float64]
 MAX_OFFERED = 3  # columns of one question
 MAX_COMPARED = 64  # columns whose numbers are read
 MIN_STAMP = 1e8  # of a column: s since 1970, or ns in a second, and nothing that a drive measures
-EFFORTS = {"joint_torque": "the torque of the joint", "current": "the current of the motor"}
-MOTIONS = {"output_angle": "the angle of the joint", "input_angle": "the angle of the motor", "speed": "a speed"}
+EFFORTS_IN_WORDS = {"joint_torque": "the torque of the joint", "current": "the current of the motor"}
+MOTIONS_IN_WORDS = {"output_angle": "the angle of the joint", "input_angle": "the angle of the motor", "speed": "a speed"}
 OF_ONE_SIDE = ("friction", "torsion")  # kinds whose torque has no side in its name
-PAIRS = (("output_angle", "joint_torque"), ("speed", "torque"))  # of channels that are a measurement together
-FREQUENCIES, RESPONSES = {"frequency", "freq", "frequenz"}, {"magnitude", "mag", "gain", "amplitude", "phase", "betrag"}
-SPEED = {"constants": {"speed": 10.0}}, {"speed": "the constant speed [rad/s]"}
+PAIRS_OF_CHANNELS = (("output_angle", "joint_torque"), ("speed", "torque"))  # of channels that are a measurement together
+FREQUENCY_WORDS, RESPONSE_WORDS = (
+    {"frequency", "freq", "frequenz"},
+    {"magnitude", "mag", "gain", "amplitude", "phase", "betrag"},
+)
+CONSTANT_SPEED = {"constants": {"speed": 10.0}}, {"speed": "the constant speed [rad/s]"}
 
 
 def is_measured(values: Array) -> bool:
@@ -60,15 +63,15 @@ def answers(table: OpenTable, known: Sequence[Column], kind: str | None) -> list
     has_effort, has_motion = bool(quantities & {"torque", "current"}), bool(quantities & {"angle", "speed", "twist"})
     names = [name for name, values in series.items() if not rises_evenly(values)] or list(series)
     if has_effort != has_motion:
-        wanted = {"torque": "the torque"} if "twist" in quantities or kind in OF_ONE_SIDE else EFFORTS
-        return _each(names, wanted if has_motion else MOTIONS)
+        wanted = {"torque": "the torque"} if "twist" in quantities or kind in OF_ONE_SIDE else EFFORTS_IN_WORDS
+        return _each(names, wanted if has_motion else MOTIONS_IN_WORDS)
     if has_effort or not names:
         return []
     if len(names) == 1:
-        given, numbers = SPEED
-        ways = [_named({channel: names[0]}) for channel in EFFORTS]
+        given, numbers = CONSTANT_SPEED
+        ways = [_named({channel: names[0]}) for channel in EFFORTS_IN_WORDS]
         return [Answer(f"{way.label}, at one speed", {**way.given, **given}, numbers) for way in ways]
-    pairs = [_named(dict(zip(channels, names[:2], strict=True))) for channels in PAIRS]
+    pairs = [_named(dict(zip(channels, names[:2], strict=True))) for channels in PAIRS_OF_CHANNELS]
     if "time" in quantities:
         return pairs
     return [Answer(f"{pairs[0].label}", {**pairs[0].given, **LOG_AT_RATE.given}, LOG_AT_RATE.numbers), *pairs[1:]]
@@ -77,12 +80,12 @@ def answers(table: OpenTable, known: Sequence[Column], kind: str | None) -> list
 def is_frequency_response(table: OpenTable) -> bool:
     """True if a column is a frequency and another one a magnitude, a gain or a phase."""
     words = {word for label in table.labels for word in words_of(label.name)}
-    return bool(words & FREQUENCIES and words & RESPONSES)
+    return bool(words & FREQUENCY_WORDS and words & RESPONSE_WORDS)
 
 
 def motions(names: Sequence[str]) -> list[Answer]:
     """Return the answers to which of some columns is a motion."""
-    return _each(names, MOTIONS)
+    return _each(names, MOTIONS_IN_WORDS)
 
 
 def _each(names: Sequence[str], channels: Mapping[str, str]) -> list[Answer]:
@@ -90,5 +93,5 @@ def _each(names: Sequence[str], channels: Mapping[str, str]) -> list[Answer]:
 
 
 def _named(columns: dict[str, str]) -> Answer:
-    words = {**EFFORTS, **MOTIONS, "torque": "the torque"}
+    words = {**EFFORTS_IN_WORDS, **MOTIONS_IN_WORDS, "torque": "the torque"}
     return Answer(", ".join(f"{one_line(name)} is {words[channel]}" for channel, name in columns.items()), {"columns": columns})

@@ -13,7 +13,7 @@ from strainwave.files.labels import ColumnSource, is_unit
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts, is_share
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
+from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS, Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.incomplete_units import check_units, with_counts
 from strainwave.identification.reading.mapping import FileMapping
@@ -122,7 +122,7 @@ def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMappin
     """Return the columns with the units that a person gave for a channel, a quantity or a name in the file; and remarks."""
     found, remarks = list(columns), []
     for name, unit in mapping.units.items():
-        channel = CHANNELS.get(ALIASES.get(name, name))
+        channel = CHANNELS.get(CHANNEL_ALIASES.get(name, name))
         places = [
             place
             for place, column in enumerate(columns)
