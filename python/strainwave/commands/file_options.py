@@ -61,8 +61,8 @@ class FileOptions:
         Raises:
             ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
         """
-        from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS
         from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
+        from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS
         from strainwave.identification.reading.source import measurement_file
 
         side: Any = self.side

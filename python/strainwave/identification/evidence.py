@@ -18,11 +18,10 @@ from strainwave.files.units import convert
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.sizes import MIN_RATIO, REST_SPEED
 from strainwave.identification.kinds.prepared_log import log_of
-from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import EFFORT_WORDS, Side, meaning, words_of
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, EFFORT_WORDS, Side, meaning, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
+from strainwave.identification.reading.roles import MIN_MOTOR_SPEED
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import Answer
 

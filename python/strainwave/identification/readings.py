@@ -21,7 +21,7 @@ from strainwave.identification.evidence import MIN_ODDS, Effort, Record, Usual, 
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, in_words, recognise
-from strainwave.identification.reading.sides import AS_WAS_GIVEN
+from strainwave.identification.reading.roles import AS_WAS_GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert, measures
+from strainwave.identification.reading.motion import speed_per_slope
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
 from strainwave.messages import as_option, listed

@@ -16,8 +16,8 @@ from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.motion_log import MotionLog, per_torque
 from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.units import MAX_JOINT_ANGLE
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain

@@ -22,12 +22,10 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
     with_breakaway,
 )
-from strainwave.identification.reading.angles import jumps
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import MAX_SPEED_AT_REST, runs_of
+from strainwave.identification.reading.motion import MAX_SPEED_AT_REST, jumps, runs_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import first
+from strainwave.identification.reading.roles import Column, first
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.residuals import rms

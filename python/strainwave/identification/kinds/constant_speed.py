@@ -16,11 +16,9 @@ from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, measured
-from strainwave.identification.reading.sides import pair
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, measured, pair
 from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar

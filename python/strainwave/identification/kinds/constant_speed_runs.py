@@ -19,10 +19,10 @@ from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
 from strainwave.identification.kinds.friction_table import fit_table
-from strainwave.identification.reading.motions import stretches
+from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
+from strainwave.identification.reading.roles import MIN_MOTOR_SPEED
 from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque

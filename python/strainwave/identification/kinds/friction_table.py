@@ -27,12 +27,19 @@ from strainwave.identification.experiments.friction_table import CONDITIONS, Fri
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import stretches
+from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
-from strainwave.identification.reading.sides import pair, side_of_table
+from strainwave.identification.reading.roles import (
+    Column,
+    ColumnRoles,
+    first,
+    measured,
+    needed,
+    needed_effort,
+    pair,
+    side_of_table,
+)
 from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
 from strainwave.identification.results.curves import curves_of
 from strainwave.identification.results.determined import (

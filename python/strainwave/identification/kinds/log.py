@@ -17,10 +17,9 @@ from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.shafts import put_sided
 from strainwave.identification.kinds.torsion_loop import is_loaded_spring, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction

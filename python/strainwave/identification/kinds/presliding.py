@@ -23,9 +23,9 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
 )
 from strainwave.identification.kinds.kind import Ranked
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import Column
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut

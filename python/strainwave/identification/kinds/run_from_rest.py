@@ -17,10 +17,9 @@ from strainwave.identification.fitting.influence import InfluenceOfKept, influen
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.remarks import exceeded, thinned, unused
 from strainwave.identification.kinds.shafts import put_sided
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.curves import pictures_of_channels
 from strainwave.identification.results.file_result import FileResult

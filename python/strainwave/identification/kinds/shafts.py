@@ -8,12 +8,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
-from strainwave.identification.reading.roles import measured, names_of, put
-from strainwave.identification.reading.sides import (
+from strainwave.identification.reading.roles import (
     MIN_FACTOR_OF_SIDES,
+    Column,
+    measured,
+    names_of,
+    put,
     side_of_motion,
     side_of_torque,
     sides_of_angles,

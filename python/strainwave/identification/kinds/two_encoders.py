@@ -6,11 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from strainwave.files.entries import Entry
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
-from strainwave.identification.reading.sides import pair, sides_of_angles
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of, pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders, picture_of_turn
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar

@@ -12,11 +12,12 @@ import numpy as np
 from strainwave.files.labels import ColumnSource, places_of
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import measures
-from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS, Channel
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import (
+    CHANNEL_ALIASES,
+    CHANNELS,
     QUANTITIES,
+    Channel,
     Meaning,
     is_of_joint,
     meaning,
@@ -25,7 +26,7 @@ from strainwave.identification.reading.names import (
     which_of,
     words_of,
 )
-from strainwave.identification.reading.roles import columns_for
+from strainwave.identification.reading.roles import Column, columns_for
 from strainwave.messages import listed, one_line, quoted
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 

@@ -29,8 +29,7 @@ from strainwave import arguments, questions
 from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit, convert
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, Side
 from strainwave.messages import nearest_of, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
 

@@ -1,4 +1,4 @@
-"""The meaning of the name of a column: quantity, side, reference or not, and joint, in the spellings that logs have."""
+"""Meaning of the name of a column: quantity, side, reference or not, and joint; the channels; and names of files."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import re
 import unicodedata
 from collections.abc import Sequence
 from functools import lru_cache
+from pathlib import Path
 from typing import Literal, NamedTuple
 
 from strainwave.files.labels import Label
-from strainwave.files.units import counts, is_share, measures
+from strainwave.files.units import convert, counts, is_share, measures
 
 Quantity = Literal["time", "angle", "twist", "speed", "torque", "current", "voltage", "temperature", "vibration"]
 Side = Literal["input", "output"]
@@ -354,3 +355,107 @@ def which_of(words: list[str]) -> str:
     numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]
     known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED_WORDS, *NEUTRAL_WORDS, *INDEX_LETTERS, *ESTIMATE_WORDS, *SHARE_UNITS, "dot"}
     return ".".join(numbers) or "_".join(word for word in words if word not in known)
+
+
+# ---- Channels --------------------------------------------------------------------------------------------------------
+
+
+class Channel(NamedTuple):
+    """A measured quantity of a shaft.
+
+    Args:
+        quantity: what is measured
+        side: of which shaft; None if the kind of measurement or the other columns determine it
+        commanded: True for a reference
+        modelled: True for the output of a model
+        reflected: True for a motion of the input that is counted at the output: divided by the ratio
+        loading: True for the torque that loads a gear while its friction is measured
+    """
+
+    quantity: Quantity
+    side: Side | None = None
+    commanded: bool = False
+    modelled: bool = False
+    reflected: bool = False
+    loading: bool = False
+
+    @property
+    def measured(self) -> bool:
+        return not (self.commanded or self.modelled or self.loading)
+
+    @property
+    def unit(self) -> str:
+        return UNITS[self.quantity]
+
+
+# All channels by name. If a name contains no side, the kind of measurement or the other columns determine it.
+CHANNELS: dict[str, Channel] = {
+    "time": Channel("time"),
+    "command": Channel("angle", commanded=True),
+    "voltage": Channel("voltage"),
+    "current": Channel("current"),
+    "input_torque": Channel("torque", "input"),  # of the motor, at its shaft
+    "joint_torque": Channel("torque", "output"),  # of the motor, counted at the output; or of a sensor there
+    "rigid_torque": Channel("torque", "output", modelled=True),  # of gravity and of arms that move together, as a model has it
+    "input_angle": Channel("angle", "input"),
+    "input_speed": Channel("speed", "input"),
+    "reflected_angle": Channel("angle", "input", reflected=True),  # of the motor, divided by the ratio, as robots export it
+    "reflected_speed": Channel("speed", "input", reflected=True),
+    "output_angle": Channel("angle", "output"),
+    "output_speed": Channel("speed", "output"),
+    "other_angles": Channel("angle", "output"),  # of joints that move too, as numbers or names of columns with commas
+    "regressors": Channel("torque", "output", modelled=True),  # of a model of the arm, each per one of its parameters, as above
+    "load_torque": Channel("torque", loading=True),  # of a friction table: what loads the gear, counted where the table is
+    "twist": Channel("twist"),
+    "temperature": Channel("temperature"),
+    "vibration": Channel("vibration"),  # of an accelerometer on the housing
+    "torque": Channel("torque"),
+    "speed": Channel("speed"),
+    "angle": Channel("angle"),
+}
+# Other names that people may give.
+CHANNEL_ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}
+
+
+# ---- Names of files --------------------------------------------------------------------------------------------------
+
+
+# How people write the units of a speed in names of files, which have neither slashes nor brackets.
+SPEED_UNITS_OF_FILES = {
+    **dict.fromkeys(("rpm", "upm", "umin", "1min", "min-1", "rev_min"), "rpm"),
+    **dict.fromkeys(("dps", "degps", "deg_s", "degs", "deg-s", "deg_per_s", "grad_s"), "deg/s"),
+    **dict.fromkeys(("radps", "rad_s", "rads", "rad-s", "rad_per_s"), "rad/s"),
+}
+_SPEED_IN_NAME = re.compile(
+    r"(?<![\w.+-])(?P<sign>[+-]|(?:neg|minus|pos|plus)[ _]?)?(?P<number>[0-9]{1,6}(?:[.p][0-9]{1,9})?)[ _]?"
+    rf"(?P<unit>{'|'.join(sorted(map(re.escape, SPEED_UNITS_OF_FILES), key=len, reverse=True))})(?![a-z0-9])"
+)
+
+
+_JOINT_IN_NAME = re.compile(r"(?<![a-z0-9])(?:joint|jnt|gelenk|axis|achse|j|q)[ _-]?0*(?P<number>[0-9]{1,2})(?![0-9a-z.])")
+
+
+def joint_in(path: Path) -> str:
+    """Return the joint in the name of a file; empty if it contains none, or two.
+
+    >>> joint_in(Path("joint_3_trapez.csv")), joint_in(Path("q2_run_1.csv")), joint_in(Path("run_2.csv"))
+    ('3', '2', '')
+    """
+    found = {match["number"] for match in _JOINT_IN_NAME.finditer(path.stem.casefold())}
+    return found.pop() if len(found) == 1 else ""
+
+
+def speed_in(path: Path) -> float | None:
+    """Return the speed with its unit in the name of a file [rad/s]; None if it contains none, or two.
+
+    A minus right behind a word may be a hyphen: a number behind it is not taken.
+
+    >>> speed_in(Path("run_-20rpm.csv")), speed_in(Path("J2_0p5_rad_s.txt")), speed_in(Path("run_20.csv"))
+    (-2.0943951023931953, 0.5, None)
+    """
+    found = list(_SPEED_IN_NAME.finditer(re.sub(r"_(?=[+-]?[0-9])|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
+    if len(found) != 1:
+        return None
+    (match,) = found
+    sign = -1.0 if (match["sign"] or "").startswith(("-", "neg", "minus")) else 1.0
+    return sign * convert(float(match["number"].replace("p", ".")), SPEED_UNITS_OF_FILES[match["unit"]], "rad/s")

@@ -17,10 +17,6 @@ from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
-from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS
-from strainwave.identification.reading.clock import clock, regular
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.columns import (
     USUAL_FIRST,
     chosen,
@@ -29,14 +25,23 @@ from strainwave.identification.reading.columns import (
     spans_of_joints,
     which_joint,
 )
-from strainwave.identification.reading.layout import interleaved, nameless
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
-from strainwave.identification.reading.missing_units import other_units
-from strainwave.identification.reading.name_of_file import joint_in, speed_in
-from strainwave.identification.reading.names import Side, meaning, which_of, words_of
-from strainwave.identification.reading.roles import ColumnRoles, names_of
-from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
+from strainwave.identification.reading.motion import MAX_OFF_SPEED, jumps, renewed_rows, speed_per_slope, unwrapped
+from strainwave.identification.reading.names import (
+    CHANNEL_ALIASES,
+    CHANNELS,
+    Side,
+    joint_in,
+    meaning,
+    speed_in,
+    which_of,
+    words_of,
+)
+from strainwave.identification.reading.roles import Column, ColumnRoles, names_of
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
+from strainwave.identification.reading.times import clock, regular
+from strainwave.identification.reading.units import other_units
+from strainwave.identification.reading.unnamed import interleaved, nameless
 from strainwave.identification.reading.values import misspelt_units, read
 from strainwave.messages import listed, one_line, quoted
 from strainwave.presentation import Presented

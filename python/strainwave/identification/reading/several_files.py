@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import EFFORTS
-from strainwave.identification.reading.channels import CHANNELS
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import CHANNELS, Side
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.messages import listed

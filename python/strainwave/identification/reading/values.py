@@ -13,14 +13,11 @@ from strainwave.files.labels import ColumnSource, is_unit
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts, is_share
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.channels import CHANNEL_ALIASES, CHANNELS, Channel
-from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.incomplete_units import check_units, with_counts
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import Assumed, units_of
-from strainwave.identification.reading.names import UNITS, meaning
-from strainwave.identification.reading.recorders import with_registers
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, UNITS, Channel, meaning
+from strainwave.identification.reading.roles import Column
 from strainwave.identification.reading.times import run_on
+from strainwave.identification.reading.units import Assumed, check_units, units_of, with_counts, with_registers
 from strainwave.messages import as_option, listed, one_line, quoted, unquoted
 from strainwave.questions import Answer, QuestionError
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
-from strainwave.identification.reading.angles import jumps, unwrapped
+from strainwave.identification.reading.motion import jumps, unwrapped
 
 steps = arrays(np.float64, st.integers(5, 200), elements=st.floats(-0.24, 0.24))
 

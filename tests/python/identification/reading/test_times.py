@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
-from strainwave.identification.reading.clock import Clock, clock, regular
+from strainwave.identification.reading.times import Clock, clock, regular
 
 untimed = settings(deadline=None, max_examples=60)
 
