@@ -26,6 +26,7 @@ from strainwave.identification.checks.logs import (
     INERTIA_IN_TWO_WAYS,
     RATIO_OF_ENCODERS,
     held_out_error,
+    motions_of_both_shafts,
     ratio_of_encoders,
     speed_against_angle,
     speed_of_another_clock,
@@ -127,6 +128,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),
+        *motions_of_both_shafts(file, ratio),
         input_speed(speed, name),
         *_given_inertia(taken, name),
         *_torque_constant(taken, name),
