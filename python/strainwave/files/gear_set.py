@@ -539,13 +539,26 @@ def _file(name_or_path: str | Path) -> Path:
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
-    name = re.sub(r"[\s_]+", "-", name_or_path.strip().casefold())  # catalogues print HFUC-25-100
+    name = spelled(name_or_path)
     if name not in files and path.is_dir():
         return path / GEAR_FILE
     if name not in files:
-        near = difflib.get_close_matches(name, files)
+        size, _, ratio = name.rpartition("-")
+        ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
+        near = ", ".join(difflib.get_close_matches(name, files))
+        hint = f"; near it are {near}" if near else ""
+        hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
         raise ValueError(
-            f"no set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
+            f"no set {quoted(name_or_path)} in the catalogue{hint}; "
             'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
     return files[name]
+
+
+def spelled(name: str) -> str:
+    """Return a name, or a part of one, as the catalogue spells it: makers print HFUC-25-100 or HFUC 25-100.
+
+    >>> spelled("HFUC_25 100")
+    'hfuc-25-100'
+    """
+    return re.sub(r"[\s_]+", "-", name.strip().casefold())
