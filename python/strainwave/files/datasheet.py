@@ -9,8 +9,7 @@ from typing import Any
 
 from strainwave import Gear, arguments, friction, hysteresis, kinematic_error, kinematics, stiffness
 from strainwave.files import typical_gear as typical
-from strainwave.files.entries import Entry, Quantity
-from strainwave.files.figure import Figure, quantity_of
+from strainwave.files.entries import Entry, Figure, Quantity, quantity_of
 from strainwave.messages import listed, shortened, unquoted
 
 UNITS = {

@@ -342,7 +342,7 @@ class GearSet(Pictured):
 
     def plot(self) -> Figure:
         """Return a figure of the gear: twist over torque, and friction over speed."""
-        from strainwave.files.gear_plot import gear_figure
+        from strainwave.files.plots import gear_figure
 
         return gear_figure(self.gear, self.name)
 

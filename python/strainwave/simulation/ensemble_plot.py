@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
-from strainwave.files.recording_plot import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
+from strainwave.files.plots import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
 from strainwave.messages import in_a_sentence
 
 if TYPE_CHECKING:

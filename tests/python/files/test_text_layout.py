@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.files import text_pairs
+from strainwave.files import text_layout
 from strainwave.files.tables import open_table
 
 BLOCK = """header:
@@ -65,5 +65,5 @@ def test_a_table_below_settings_stays_a_table(tmp_path: Path) -> None:
 
 
 def test_files_beyond_the_limit_are_no_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(text_pairs, "MAX_PAIRS_BYTES", 10)
-    assert text_pairs.pairs_table("drive.log", b"a: 1\na: 2\na: 3\n") is None
+    monkeypatch.setattr(text_layout, "MAX_PAIRS_BYTES", 10)
+    assert text_layout.pairs_table("drive.log", b"a: 1\na: 2\na: 3\n") is None
