@@ -24,9 +24,10 @@ from strainwave.identification.checks.comparisons import (
 )
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.reading.joints import check_one_joint
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
-from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
 from strainwave.identification.reading.source import (
     BAG_FILE,

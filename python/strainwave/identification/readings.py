@@ -19,8 +19,9 @@ from strainwave.identification.candidates.plain import fit_plain, sliding_square
 from strainwave.identification.checks.sizes import input_speed
 from strainwave.identification.evidence import MIN_ODDS, Effort, Record, Usual, efforts_of, record_of
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
+from strainwave.identification.reading.answers import MAX_ANSWERS, in_words
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, in_words, recognise
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.roles import AS_WAS_GIVEN
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.identification.results.gear_so_far import GearSoFar

@@ -7,9 +7,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import compress
 
-import numpy as np
-
-from strainwave.files.labels import ColumnSource, places_of
+from strainwave.files.labels import places_of
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import measures
 from strainwave.identification.reading.mapping import FileMapping
@@ -31,7 +29,6 @@ from strainwave.messages import listed, one_line, quoted
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 
 MAX_JOINTS_OFFERED = 8  # by a question: more than an arm has are a humanoid's
-MIN_SHARE_OF_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
 LISTED_CHANNELS = ("other_angles", "regressors")  # channels that may be several columns
 EITHER_QUANTITY = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
 MEASURED_WORDS = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
@@ -49,7 +46,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
         the columns, and what was decided between duplicates
     """
     by_user = _by_user(table, mapping)
-    named = _of_one_time(_by_name(table, mapping, by_user))
+    named = _of_one_time(by_name(table, mapping, by_user))
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
     found = by_user + _of_one_joint(table, own, mapping, by_user)
     is_stated = any(column.channel.quantity in EFFORT_KINDS for column in by_user)
@@ -57,41 +54,10 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
     return found, [remark for name, remark in remarks.items() if name in names]
 
 
-def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
-    """Return the joints whose angles change, of a file with several of which a person named none."""
-    spans = spans_of_joints(table, mapping)
-    least = MIN_SHARE_OF_MOTION * max(spans.values(), default=0.0)
-    return [which for which, span in spans.items() if span > 0.0 and span >= least]
-
-
-def spans_of_joints(table: OpenTable, mapping: FileMapping) -> dict[str, float]:
-    """Return how far each joint moves, in its unit in the file, of a file with several of which a person named none."""
-    if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
-        return {}
-    groups = dict[Channel, dict[str, int]]()
-    for column in _by_name(table, mapping):
-        if column.channel.quantity == "angle" and column.channel.measured and column.which:
-            angles = groups.setdefault(column.channel, {})
-            if column.which in angles:
-                return {}
-            angles[column.which] = column.position
-    angles = max(groups.values(), key=len, default={})
-    if len(angles) < 2:
-        return {}
-    numbers, _ = table.measured([ColumnSource(place, which, which, "1") for which, place in angles.items()])
-    return {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
-
-
-def numbered_joint(table: OpenTable) -> list[str]:
-    """Return the number of the joint that all angles have in their names, as q7; empty if they have none, or several."""
-    found = {column.which for column in _by_name(table, FileMapping()) if column.channel.quantity == "angle"}
-    return sorted(found) if len(found) == 1 and all(each.isdigit() for each in found) else []
-
-
 # ---- By their names --------------------------------------------------------------------------------------------------
 
 
-def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
+def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
     """Return the columns with a known name, but for channels that a person named."""
     taken = {column.position for column in by_user}
     columns = []

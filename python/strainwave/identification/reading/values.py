@@ -42,7 +42,7 @@ NEARLY_KNOWN = {name: (*OTHER_UNITS[name], *more) for name, more in (
 MAX_LISTED = 4  # names, if none is known
 
 
-def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
+def values_of(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
     """Return the columns with their values in SI units, and remarks of units and of what was left out."""
     if not table.labels:
         raise ValueError(one_line(f"{table.file} has no columns"))

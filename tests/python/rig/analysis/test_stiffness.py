@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from strainwave.rig import Loop, Result, analyse, closure_of_secants, soft_parts, table
-from strainwave.rig.analysis.analysis import DEFINITIONS
+from strainwave.rig.analysis.analysis import DEFINITIONS, LoopAnalysis
 from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.segments import fit_segments
 
