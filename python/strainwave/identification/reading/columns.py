@@ -46,12 +46,15 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
         the columns, and what was decided between duplicates
     """
     by_user = _by_user(table, mapping)
-    named = _of_one_time(by_name(table, mapping, by_user))
+    named = by_name(table, mapping, by_user)
+    times = [column for column in named if column.channel.quantity == "time"]
+    time = next((column for column in times if not column.which), times[0] if times else None)
+    named = [replace(each, which="") if each is time else each for each in named if each not in times or each is time]
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
-    found = by_user + _of_one_joint(table, own, mapping, by_user)
+    columns = by_user + _of_one_joint(table, own, mapping, by_user)
     is_stated = any(column.channel.quantity in EFFORT_KINDS for column in by_user)
-    names = set[str]() if is_stated else {column.name for column in found}
-    return found, [remark for name, remark in remarks.items() if name in names]
+    names = set[str]() if is_stated else {column.name for column in columns}
+    return columns, [remark for name, remark in remarks.items() if name in names]
 
 
 # ---- By their names --------------------------------------------------------------------------------------------------
@@ -74,7 +77,9 @@ def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = 
         if not any(column.channel == channel and column.own for column in by_user):
             unit = "s" if content == "dates" else found.unit or label.unit or None
             columns.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
-    return _numbered_apart(_without_estimates(_of_measured_structure(columns)))
+    columns = _of_measured_structure(columns)
+    certain = {(column.channel, column.which) for column in columns if not column.estimated}
+    return _numbered_apart([each for each in columns if not each.estimated or (each.channel, each.which) not in certain])
 
 
 def _meanings(table: OpenTable, mapping: FileMapping) -> list[Meaning | None]:
@@ -97,12 +102,6 @@ def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:
     return [column for column, structure in pairs if structure in measured or column.channel not in channels]
 
 
-def _without_estimates(columns: Sequence[Column]) -> list[Column]:
-    """Return the columns without estimates of what another one contains."""
-    own = {(column.channel, column.which) for column in columns if not column.estimated}
-    return [column for column in columns if not column.estimated or (column.channel, column.which) not in own]
-
-
 def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
     """Return the columns without the numbers in their names that all of one channel have: of the robot, and of no joint."""
     groups, differs = dict[Channel, list[list[str]]](), dict[Channel, list[bool]]()
@@ -113,13 +112,6 @@ def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
         differs[channel] = [len(set(each)) > 1 for each in zip(*group, strict=True)] if is_even else []
     own = [compress(column.which.split("."), differs[column.channel]) for column in columns]
     return [replace(column, which=".".join(each) or column.which) for column, each in zip(columns, own, strict=True)]
-
-
-def _of_one_time(columns: Sequence[Column]) -> list[Column]:
-    """Return the columns with one time: the first whose name has no further word, or the first."""
-    times = [column for column in columns if column.channel.quantity == "time"]
-    taken = next((column for column in times if not column.which), times[0] if times else None)
-    return [replace(each, which="") if each is taken else each for each in columns if each not in times or each is taken]
 
 
 def _beside(by_user: Sequence[Column], named: Sequence[Column]) -> list[Column]:

@@ -229,7 +229,7 @@ def words_of(name: str) -> list[str]:
     apart = _one_word(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain))
     found: list[str] = []
     for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
-        found += SYMBOLS.get(word) or _parts(word) or _singular(word)
+        found += SYMBOLS.get(word) or _parts(word) or (word.endswith("s") and _parts(word[:-1])) or [word]
     is_of_drive = found[1:2] == ["q"] and found[0] in ("i", "u")  # i_q and u_q of a field-oriented one
     return [f"{found[0]}q", *found[2:]] if is_of_drive else found
 
@@ -252,11 +252,6 @@ def _one_word(name: str) -> str:
     for phrase, word in WORD_OF_PHRASE.items():
         name = phrase.sub(word, name)
     return name
-
-
-def _singular(word: str) -> list[str]:
-    """Return a word that is not known, or the one of which it is the plural."""
-    return _parts(word[:-1]) or [word] if word.endswith("s") else [word]
 
 
 @lru_cache(maxsize=4096)

@@ -20,7 +20,7 @@ from strainwave.files.table_format import OpenTable
 from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.motion import is_slope
-from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, Quantity, is_of_joint, meaning
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint, meaning
 from strainwave.identification.reading.times import merged, runs_in, seconds_of, with_one_time
 from strainwave.identification.reading.unnamed import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.messages import listed, one_line
@@ -118,9 +118,13 @@ class MeasurementFile:
         if own is None or self.path.is_dir() or self.run is not None:
             return False
         try:
-            return nameless(self.raw) or _names_only(self.raw.labels, QUANTITY_OF.get(own[0].split("_")[0].casefold()))
+            if nameless(self.raw):
+                return True
+            quantity = QUANTITY_OF.get(own[0].split("_")[0].casefold())
+            named = {(channel := meaning(label)) and channel.quantity for label in self.raw.labels}
         except (ValueError, OSError):
             return False
+        return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
 
 
 class MeasurementFiles(NamedTuple):
@@ -162,13 +166,12 @@ def distinct_names(files: Sequence[MeasurementFile]) -> dict[Path, str]:
     """
     paths = list(dict.fromkeys(file.path for file in files))
     whole = [path.parts for path in paths]
-    return {path: Path(*own[-_parts_needed(own, whole) :]).as_posix() for path, own in zip(paths, whole, strict=True)}
-
-
-def _parts_needed(own: tuple[str, ...], all_parts: Sequence[tuple[str, ...]]) -> int:
-    """Return the number of last parts of a path that no other path has; all parts if another path ends with them."""
-    counts = (sum(other[-count:] == own[-count:] for other in all_parts) for count in range(1, len(own) + 1))
-    return next((count for count, alike in enumerate(counts, 1) if alike == 1), len(own))
+    names = dict[Path, str]()
+    for path in paths:
+        ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
+        end = next((end for end in ends if sum(other[-len(end) :] == end for other in whole) == 1), path.parts)
+        names[path] = Path(*end).as_posix()
+    return names
 
 
 def _below(path: Path) -> FolderFiles:
@@ -236,12 +239,6 @@ def files_of_same_recording(path: Path) -> list[Path]:
         return []
     others = (other for other in path.parent.iterdir() if other.suffix.lower() == path.suffix.lower() and other != path)
     return sorted(other for other in others if (found := _quantity_in(other)) and found[1] == own[1] and found[0] != own[0])
-
-
-def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
-    """True if columns are channels of which each names this quantity, or beside a time none."""
-    named = {(found := meaning(label)) and found.quantity for label in labels}
-    return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
 
 
 def _named(path: Path) -> Path:

@@ -64,27 +64,30 @@ def _with_whole_time(table: OpenTable) -> OpenTable:
         for part, (start, size) in enumerate(ends) if unit in SECOND_WORDS else ():
             if start == before and size in SECOND_PARTS and _are_one_time(table, seconds, part, SECOND_PARTS[size]):
                 labels[seconds] = Label(f"{labels[seconds].text} and {labels[part].text}", "time", "s")
-                return SummedTime(table, labels, seconds, ColumnSource(part, "", "parts of seconds", "1"), SECOND_PARTS[size])
+                parts = ColumnSource(part, "", "parts of seconds", "1")
+                return TableView(table, labels, slice(0, None), seconds=seconds, parts=parts, size=SECOND_PARTS[size])
     return table
 
 
 @dataclass(frozen=True, eq=False)
-class SummedTime:
-    """A table whose time is the sum of whole seconds and their parts, which are no channel of their own.
+class TableView:
+    """Some rows of a table, with a time that may be the sum of whole seconds and their parts.
 
     Args:
         table: as it is in the file
         labels: of the columns
-        seconds: position of the whole seconds
-        parts: the column of their parts
+        rows: that are taken
+        seconds: position of the whole seconds; -1 if the time is one column
+        parts: the column of their parts, which is no channel of its own
         size: of one part [s]
     """
 
     table: OpenTable
     labels: Sequence[Label]
-    seconds: int
-    parts: ColumnSource
-    size: float
+    rows: slice
+    seconds: int = -1
+    parts: ColumnSource | None = None
+    size: float = 0.0
 
     @property
     def file(self) -> str:
@@ -100,23 +103,30 @@ class SummedTime:
 
     @property
     def contents(self) -> Sequence[Content]:
-        return ["other" if place == self.parts.position else content for place, content in enumerate(self.table.contents)]
+        hidden = -1 if self.parts is None else self.parts.position
+        return ["other" if place == hidden else content for place, content in enumerate(self.table.contents)]
 
     def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """Return the columns wanted, all of them numbers."""
-        return self._summed(self.table.numbers([*sources, self.parts]), sources)
+        return self._taken(self.table.numbers(self._needed(sources)), sources)
 
     def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """Return the columns wanted, nan in empty cells; and what was left out."""
-        numbers, remarks = self.table.measured([*sources, self.parts])
-        return self._summed(numbers, sources), remarks
+        numbers, remarks = self.table.measured(self._needed(sources))
+        return self._taken(numbers, sources), remarks
 
     def place(self, row: int) -> str:
-        return self.table.place(row)
+        return self.table.place(self.rows.start + row)
 
-    def _summed(self, numbers: Mapping[str, Array], sources: Sequence[ColumnSource]) -> dict[str, Array]:
-        parts = {source.name: self.size * numbers[self.parts.name] for source in sources if source.position == self.seconds}
-        return {source.name: numbers[source.name] + parts.get(source.name, 0.0) for source in sources}
+    def _needed(self, sources: Sequence[ColumnSource]) -> Sequence[ColumnSource]:
+        return sources if self.parts is None else [*sources, self.parts]
+
+    def _taken(self, numbers: Mapping[str, Array], sources: Sequence[ColumnSource]) -> dict[str, Array]:
+        columns = {source.name: numbers[source.name] for source in sources}
+        if self.parts is not None:
+            parts = self.size * numbers[self.parts.name]
+            columns |= {each.name: numbers[each.name] + parts for each in sources if each.position == self.seconds}
+        return {name: values[self.rows] for name, values in columns.items()}
 
 
 def _end(label: Label) -> tuple[tuple[str, ...], str]:
@@ -160,50 +170,7 @@ def _with_own_times(table: OpenTable) -> OpenTable:
     return grid_table(table.file, table.title, merged(grids), channels, [*remarks, *table.left_out])
 
 
-@dataclass(frozen=True, eq=False)
-class TableRows:
-    """Some rows of a table, which are a recording of their own.
-
-    Args:
-        table: of all rows
-        labels: of its columns
-        rows: of the recording
-    """
-
-    table: OpenTable
-    labels: Sequence[Label]
-    rows: slice
-
-    @property
-    def file(self) -> str:
-        return self.table.file
-
-    @property
-    def title(self) -> str:
-        return self.table.title
-
-    @property
-    def left_out(self) -> Sequence[str]:
-        return self.table.left_out
-
-    @property
-    def contents(self) -> Sequence[Content]:
-        return self.table.contents
-
-    def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
-        """Return the columns wanted, all of them numbers."""
-        return {name: values[self.rows] for name, values in self.table.numbers(sources).items()}
-
-    def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
-        """Return the columns wanted, nan in empty cells; and what was left out."""
-        numbers, remarks = self.table.measured(sources)
-        return {name: values[self.rows] for name, values in numbers.items()}, remarks
-
-    def place(self, row: int) -> str:
-        return self.table.place(self.rows.start + row)
-
-
-def runs_in(table: OpenTable) -> list[TableRows]:
+def runs_in(table: OpenTable) -> list[TableView]:
     """Return the recordings in a table whose time begins anew; none if it is one recording.
 
     >>> import tempfile
@@ -224,7 +191,7 @@ def runs_in(table: OpenTable) -> list[TableRows]:
     ends = [0, *restarts(stamps), len(stamps)]
     if len(ends) == 2 or min(np.diff(ends)) < MIN_ROWS_OF_RUN or run_on(stamps)[1]:
         return []
-    return [TableRows(table, table.labels, slice(int(first), int(end))) for first, end in pairwise(ends)]
+    return [TableView(table, table.labels, slice(int(first), int(end))) for first, end in pairwise(ends)]
 
 
 def restarts(stamps: Array) -> NDArray[np.intp]:

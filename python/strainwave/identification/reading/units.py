@@ -89,10 +89,13 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
         return [{speed.position: unit for speed in speeds} for unit in units]
     if any(angle in angles and speed.sure for angle, speed in pairs_of_shafts(columns)):
         return []
-    found = []
+    found, of_units = [], {unit: convert(1.0, unit, "rad/s") for unit in (*SPEED_UNITS, "rev/s")}
     for unit in ANGLE_UNITS:
         factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
-        units_of_speeds = [_unit_of_size(factor * convert(1.0, str(speed.unit), "rad/s")) for speed in speeds]
+        sizes = [factor * convert(1.0, str(speed.unit), "rad/s") for speed in speeds]
+        units_of_speeds = [
+            next((name for name, own in of_units.items() if abs(size / own - 1.0) < MAX_OFF_STEP), None) for size in sizes
+        ]
         if unit == angles[0].unit or None in units_of_speeds or not all(_may_move(angle, factor) for angle in angles):
             continue
         paired = {speed.position: str(each) for speed, each in zip(speeds, units_of_speeds, strict=True)}
@@ -115,12 +118,6 @@ def _may_move(angle: Column, factor: float) -> bool:
     """True if a joint may move as far as it would, were its angle so many times as large."""
     furthest, moved = factor * float(np.abs(angle.si).max()), factor * float(np.ptp(angle.si))
     return not angle.at_joint or (furthest < MAX_JOINT_ANGLE and (moved > MIN_JOINT_RANGE or factor > 1.0))
-
-
-def _unit_of_size(size: float) -> str | None:
-    """Return the unit of a speed by its size [rad/s]; None if none has it."""
-    sizes = {unit: convert(1.0, unit, "rad/s") for unit in (*SPEED_UNITS, "rev/s")}
-    return next((unit for unit, each in sizes.items() if abs(size / each - 1.0) < MAX_OFF_STEP), None)
 
 
 def _by_itself(column: Column, columns: Sequence[Column]) -> Assumed:
@@ -235,7 +232,10 @@ def with_counts(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
         is_counted = angle in known and counts(_incomplete_unit(angle))
         if time is not None and is_counted and speed.unit is not None and measures(speed.unit, "rad/s"):
             turns = convert(abs(speed_per_slope(angle.raw, speed.raw, time)), speed.unit, "rev/s")
-            if number := _usual_counts(1.0 / turns if turns > 0.0 else 0.0):
+            per_turn = 1.0 / turns if turns > 0.0 else 0.0
+            bits, hundreds = bits_of(per_turn, MAX_OFF_COUNTS), 100 * round(per_turn / 100.0)
+            is_hundreds = hundreds and abs(per_turn / hundreds - 1.0) < MAX_OFF_COUNTS
+            if number := int(2**bits) if bits else hundreds if is_hundreds else 0:
                 known[known.index(angle)] = replace(angle, unit=f"counts/{number}")
                 remarks.append(f"a revolution has {number} counts of {angle.name}, as its speed shows")
     return known, remarks
@@ -269,14 +269,6 @@ def check_units(columns: Sequence[Column], ratio: float | None) -> None:
     lacks += [f"of which rated value {listed(shares)} is a share"] if shares else []
     answer = Answer(listed(whys) or "with the numbers of the drive", {"units": needs}, numbers)
     raise QuestionError(f"the file does not contain {' and '.join(lacks)}", [answer])
-
-
-def _usual_counts(per_turn: float) -> int | None:
-    """Return the usual counts of a revolution near a number: a power of two, or hundreds; None if there are none."""
-    if bits := bits_of(per_turn, MAX_OFF_COUNTS):
-        return int(2**bits)
-    hundreds = 100 * round(per_turn / 100.0)
-    return hundreds if hundreds and abs(per_turn / hundreds - 1.0) < MAX_OFF_COUNTS else None
 
 
 def _counts_by_joint(column: Column, columns: Sequence[Column], ratio: float | None) -> tuple[int, str] | None:
@@ -362,7 +354,8 @@ def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
         own = {column.label.name.casefold(): column for column in columns if column.label.name.casefold() in known.counts}
         if time is None or not {known.angle, known.speed} <= own.keys() or not all(map(_is_raw, own.values())):
             continue
-        scaled = {name: _scaled(column, *known.counts[name]) for name, column in own.items()}
+        counts_of = {name: known.counts[name] for name in own}
+        scaled = {name: replace(own[name], raw=size * own[name].raw, unit=unit) for name, (size, unit) in counts_of.items()}
         angle, speed = scaled[known.angle], scaled[known.speed]
         expected = convert(1.0, f"{angle.unit}/s", str(speed.unit))
         if abs(abs(speed_per_slope(angle.raw, speed.raw, time)) / expected - 1.0) > MAX_OFF_SPEED:
@@ -380,7 +373,3 @@ def _is_raw(column: Column) -> bool:
     """True for whole numbers without a unit."""
     values = column.raw[np.isfinite(column.raw)]
     return column.unit is None and bool((values == np.round(values)).all())
-
-
-def _scaled(column: Column, size: float, unit: str) -> Column:
-    return replace(column, raw=size * column.raw, unit=unit)

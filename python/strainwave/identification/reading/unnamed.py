@@ -111,7 +111,9 @@ def _by_numbers(table: OpenTable, timed: int | None) -> MatrixLayout | None:
     numbers, _ = table.measured([ColumnSource(place, str(place), str(place), "1") for place in places[:MAX_COLUMNS]])
     begins = {int(place): values[:MAX_ROWS] for place, values in numbers.items()}
     finite = {place: np.where(np.isfinite(values), values, np.nan) for place, values in begins.items()}
-    columns = {place: values for place, values in finite.items() if _may_be_measured(values)}
+    # Single numbers alone may be larger than anything that is measured.
+    sizes = {place: np.abs(values[np.isfinite(values)]) for place, values in finite.items()}
+    columns = {place: finite[place] for place, size in sizes.items() if size.size and np.quantile(size, 0.99) < MAX_VALUE}
     rows = len(next(iter(columns.values()), []))
     if rows < MIN_ROWS:
         return None
@@ -185,12 +187,6 @@ def rises_evenly(values: Array) -> bool:
     steps = np.diff(values)
     usual = float(np.median(steps)) if len(steps) > 2 else 0.0
     return bool(usual > 0.0 and (steps >= 0.0).all() and np.quantile(np.abs(steps - usual), 0.5) <= MAX_UNEVEN * usual)
-
-
-def _may_be_measured(values: Array) -> bool:
-    """True if a column contains numbers, of which single ones alone are larger than anything that is measured."""
-    finite = np.isfinite(values)
-    return bool(finite.any() and np.quantile(np.abs(values[finite]), 0.99) < MAX_VALUE)
 
 
 def _speeds(columns: Mapping[int, Array], time: Array) -> list[tuple[int, int]]:

@@ -76,12 +76,14 @@ def values_of(table: OpenTable, columns: Sequence[Column], mapping: FileMapping)
         remarks.append(remark)
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint
-    found = [_in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known]
-    empty = [column for column in found if not column.by_user and not np.isfinite(column.si).any()]
-    if empty and len(empty) < len(found):
+    converted = [
+        _in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known
+    ]
+    empty = [column for column in converted if not column.by_user and not np.isfinite(column.si).any()]
+    if empty and len(empty) < len(converted):
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
-        found = [column for column in found if column not in empty]
-    return _whole_rows(table, found, remarks)
+        converted = [column for column in converted if column not in empty]
+    return _whole_rows(table, converted, remarks)
 
 
 def misspelt_units(table: OpenTable, mapping: FileMapping) -> QuestionError | None:
