@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.identification.candidates import ripple
+from strainwave.identification.candidates import motion_model
 from strainwave.identification.checks import comparisons, shape, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
@@ -50,9 +50,9 @@ def percent(share: float) -> str:
         f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
         f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
-        f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - ripple.MIN_OWN_SHARE**2), 3))} move the other way",
-        f"a probability of {percent(ripple.MAX_CHANCE)} at most",
-        f"uncertain by {percent(ripple.BIAS_IN_FULL_BAND)} at least",
+        f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - motion_model.MIN_OWN_SHARE**2), 3))} move the other way",
+        f"a probability of {percent(motion_model.MAX_CHANCE)} at most",
+        f"uncertain by {percent(motion_model.BIAS_IN_FULL_BAND)} at least",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

@@ -14,8 +14,8 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.mistakes import MISTAKEN
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.units import MAX_JOINT_ANGLE
 from strainwave.identification.results.check import Check
@@ -221,7 +221,7 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
     sign = np.sign(speed)
     friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
     series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])
-    columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
+    columns = motion.filtered(late(series, delay, motion.step)[0] if delay else series).T
     measured = log.measured[0]
     return np.asarray((measured - columns @ solved(columns, measured)) ** 2)
 

@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
+from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque, breakaways
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import breakaways
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.at_rest import (
     BREAKAWAY,
     AtRest,

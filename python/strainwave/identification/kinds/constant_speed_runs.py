@@ -12,12 +12,18 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.position import FULL_TURN, PositionFit, fit_position
+from strainwave.identification.candidates.steady_friction import (
+    FULL_TURN,
+    Levels,
+    PositionFit,
+    constant_speeds,
+    fit_position,
+    levels_of,
+)
 from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.motion import integrated
-from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.names import Side

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import PreslidingCandidate, fit_presliding
+from strainwave.identification.candidates.presliding import PreslidingCandidate, PreslidingLoop, fit_presliding
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
     BRISTLES,
     SLIDING,

@@ -9,8 +9,8 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.drive_log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.checks.unexplained import causes, explained, unexplained
-from strainwave.identification.dynamics.log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import InfluenceOfKept, influence

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import _core, arguments
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic import transmitted_torque
-from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.experiments.drive_log import DrivenLog
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
+from strainwave.identification.experiments.motion_log import MotionLog, per_torque, transmitted_torque
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.fit import Fit, RecordFit
 from strainwave.identification.results.file_result import Look, Picture
 from strainwave.messages import listed, quoted
 from strainwave.orders.two_encoders import TransmissionError
+
+if TYPE_CHECKING:
+    from strainwave.identification.fitting.fit import Fit, RecordFit
 
 Array = NDArray[np.float64]
 TURN_BINS = 72  # parts of a turn of the input: order 8 has nine of them

@@ -11,7 +11,6 @@ import numpy as np
 from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.check import Check
@@ -21,6 +20,8 @@ from strainwave.questions import QuestionError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from strainwave.identification.fitting.fit import Fit
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 Look = Literal["table", "loop", "series", "means", "turn"]

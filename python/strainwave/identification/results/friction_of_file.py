@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive
-from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.experiments.friction_table import FRICTIONLESS, FrictionTable
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import MotionLog, transmitted_torque
 from strainwave.identification.results.determined import steady_friction_at
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 

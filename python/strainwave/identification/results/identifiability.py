@@ -10,9 +10,9 @@ import numpy as np
 
 from strainwave.files.entries import Entry
 from strainwave.identification.candidates.friction import STEADY_NUMBERS
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit, solved_problem
 from strainwave.identification.fitting.influence import InfluenceOfKept
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 from strainwave.statistics.determined_sum import DeterminedSum, sum_by_covariance, sum_by_information
 

@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
-from strainwave.identification.fitting.fit import RecordFit
 from strainwave.statistics.spectrum import mean_power
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from strainwave.identification.fitting.fit import RecordFit
 
 Array = NDArray[np.float64]
 MAX_SEGMENT = 4096  # samples, of which spectra are averaged

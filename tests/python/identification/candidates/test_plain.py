@@ -7,8 +7,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given, settings, strategies as st
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, one_speed
-from strainwave.identification.candidates.torque_place import NO_ROTOR, torque_place
+from strainwave.identification.candidates.plain import NO_ROTOR, fit_plain, gravity_sigma, one_speed, torque_place
 from strainwave.identification.experiments.motion_log import MotionLog
 from strainwave.identification.reading.mapping import FileMapping
 

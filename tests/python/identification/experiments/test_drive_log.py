@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.identification.experiments.drive_log import DriveLog
-from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.experiments.drive_log import DriveLog, DrivenLog
 from strainwave.identification.fitting.fit import experiment_of
 
 RATIO = 50.0

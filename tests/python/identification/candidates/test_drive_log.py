@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.dynamics.log import fit_log, free_parameters, prepared
+from strainwave.identification.candidates.drive_log import fit_log, free_parameters, prepared
 from strainwave.identification.experiments.drive_log import DriveLog
 
 TRUTH = sw.Gear(

@@ -60,18 +60,18 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
     training = log.time <= TRAINING_SHARE * log.time[-1]
     is_long = log.time[-1] > MAX_STEPS_AT_FIRST * log.dt
     near = fit(drive, log.beginning(MAX_STEPS_AT_FIRST / 2 * log.dt), free).model if is_long else drive
-    found = fit(near, log, free, training=training)
+    log_fit = fit(near, log, free, training=training)
     for _ in range(MAX_ROUNDS):
-        law, wanted = found.gear.friction_input, _breakaway(found.gear, drive.gear)
+        law, wanted = log_fit.gear.friction_input, _breakaway(log_fit.gear, drive.gear)
         if wanted is None or abs(innermost(law).breakaway - wanted) <= BREAKAWAY_TOLERANCE * wanted:
             break
         follows = _changed(law, methodcaller("replace", breakaway=wanted))
-        model = found.model.replace(gear=found.gear.replace(friction_input=follows))
+        model = log_fit.model.replace(gear=log_fit.gear.replace(friction_input=follows))
         if not _moves(log, model):
             break
-        found = fit(model, log, free, training=training)
-    found = _within_a_turn(found)
-    return LogFit(found, found.rms(held_out=True))
+        log_fit = fit(model, log, free, training=training)
+    log_fit = _within_a_turn(log_fit)
+    return LogFit(log_fit, log_fit.rms(held_out=True))
 
 
 def _within_a_turn(found: Fit) -> Fit:

@@ -1,12 +1,12 @@
-"""Real and imaginary part of waves: the same unknowns and derivatives, and few steps where a constant nearly makes them up."""
+"""Real and imaginary part of waves: the same unknowns and derivatives, few steps if a constant nearly makes them up."""
 
 from __future__ import annotations
 
 import numpy as np
 import strainwave as sw
 from hypothesis import given, settings, strategies as st
+from strainwave.identification.fitting.problem import Waves
 from strainwave.identification.fitting.unknowns import Unknown
-from strainwave.identification.fitting.waves import Waves
 
 UNKNOWNS = (
     Unknown("load.gravity_torque", "N.m", 1.0, 0.0, np.inf),

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.candidates.motion import fit_motion
-from strainwave.identification.candidates.motion_model import INPUT, MotionModel
-from strainwave.identification.candidates.ripple import by_full_band, is_one_wave, with_ripple
+from strainwave.identification.candidates.motion_model import INPUT, MotionModel, by_full_band, is_one_wave, with_ripple
 from strainwave.identification.experiments.motion_log import MotionLog
 
 RATIO, COULOMB, VISCOUS, NOISE = 50.0, 0.084, 4e-4, 2e-3

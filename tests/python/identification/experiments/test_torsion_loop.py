@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.experiments.stages import series_compliance
-from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.experiments.torsion_loop import TorsionLoop, series_compliance
 
 STAGES = sw.structure.Staged(
     pitch_radius=25e-3,
