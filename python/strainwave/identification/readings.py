@@ -28,7 +28,7 @@ from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.ratio import with_ratio
 from strainwave.messages import listed, one_line
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
-from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
+from strainwave.statistics.scale import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 

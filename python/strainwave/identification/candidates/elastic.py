@@ -31,10 +31,9 @@ from strainwave.identification.fitting.blocks import sigma_by_blocks
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
-from strainwave.statistics.linear_fit import linear_fit
-from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.linear_fit import linear_fit, order_waves
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain
 
 Array = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from strainwave.identification.fitting.fit import Fit, fit, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.parameters import plain
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

@@ -19,7 +19,7 @@ from strainwave.identification.experiments.presliding import BreakawayPoint, Pre
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.statistics.covariance import covariance_of
 from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

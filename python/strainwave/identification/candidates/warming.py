@@ -15,7 +15,7 @@ from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

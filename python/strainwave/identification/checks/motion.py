@@ -25,8 +25,8 @@ from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.torque_ripple import ripple
-from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.scale import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 
 Array = NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.held_out import error_in_words
-from strainwave.statistics.shape import shape
+from strainwave.statistics.residuals import shape
 
 Array = NDArray[np.float64]
 NAME = "shape of what is left"

@@ -9,7 +9,7 @@ import numpy as np
 from strainwave import arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.presentation import Presented
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 
 @dataclass(frozen=True, eq=False)

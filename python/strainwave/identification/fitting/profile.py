@@ -14,7 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Pictured, Row
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

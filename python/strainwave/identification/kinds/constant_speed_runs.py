@@ -29,7 +29,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.undetermined import with_friction_at
 from strainwave.messages import listed
 from strainwave.statistics.residuals import rms
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several files, and the gear with them

@@ -31,7 +31,7 @@ from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import correlation_length
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 
 class Presliding(AtRest):

@@ -17,7 +17,7 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.identification.reading.times import restarts
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]

@@ -16,7 +16,7 @@ from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.parameters import every
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 

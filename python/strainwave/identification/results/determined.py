@@ -12,7 +12,7 @@ from strainwave import _core
 from strainwave._core import Gear
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from strainwave.identification.results.file_result import Picture
 from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.orders.lines import SpectrumLine
 from strainwave.presentation import Pictured, Row
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
