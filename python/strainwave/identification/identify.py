@@ -31,14 +31,17 @@ from strainwave.identification.reading.recognise import Recognised, check_one_jo
 from strainwave.identification.reading.several_files import consistent, joined, same_as
 from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.identification.readings import answered, decided
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.combined_parameter import CombinedParameter, combine
+from strainwave.identification.results.combined_parameter import CombinedParameter, combine, without_motor
 from strainwave.identification.results.drive import drive_set, name_of_files
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar, compared_path
-from strainwave.identification.results.motor_inertia import without_motor
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, Check, FileResult
+from strainwave.identification.results.gear_so_far import (
+    GearSoFar,
+    compared_path,
+    with_kinematics,
+    with_ratio,
+    with_ratio_of_all,
+)
 from strainwave.identification.results.parameter_state import ParameterState, states_of
-from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
 from strainwave.messages import listed, one_line, shortened
 from strainwave.presentation import Pictured, Reported, Row, counted
 from strainwave.progress import Progress, in_turn
@@ -120,7 +123,7 @@ class Identified(ComparedByFields, Pictured, Reported):
         Raises:
             ValueError: no identified number has a value in the start set
         """
-        from strainwave.identification.results.comparison_plot import over_start_figure
+        from strainwave.identification.results.parameter_state import over_start_figure
 
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
 

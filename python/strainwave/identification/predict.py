@@ -15,9 +15,8 @@ from strainwave.identification.kinds.kind import NOT_PREDICTED
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import Measurement, MeasurementFiles, measurement_files
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio
 from strainwave.identification.results.prediction import Prediction
-from strainwave.identification.results.ratio import with_ratio
 from strainwave.progress import Progress, in_turn
 
 

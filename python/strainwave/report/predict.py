@@ -9,10 +9,8 @@ from importlib import metadata
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.results.changes import PartChange
-from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.held_out import error_in_words
-from strainwave.identification.results.prediction import Prediction
+from strainwave.identification.results.file_result import FileResult, error_in_words
+from strainwave.identification.results.prediction import PartChange, Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.identify_files import first_remarks

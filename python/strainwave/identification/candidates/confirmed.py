@@ -18,8 +18,8 @@ from strainwave.identification.candidates.plain import MIN_SLIDING_SPEED, held_o
 from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import HeldOut
+from strainwave.identification.results.steady_friction import PATH as STEADY
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import rms
 

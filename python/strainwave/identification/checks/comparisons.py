@@ -12,7 +12,6 @@ import numpy as np
 
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.fitting.influence import uncertainty
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import (
     MAX_DISTANCE,
     CombinedParameter,
@@ -20,9 +19,8 @@ from strainwave.identification.results.combined_parameter import (
     distance,
     is_friction,
 )
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.file_result import FileEstimate, FileResult
-from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
+from strainwave.identification.results.file_result import Check, FileEstimate, FileResult
+from strainwave.identification.results.steady_friction import PATH as STEADY, friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
 from strainwave.typeset import percent
 

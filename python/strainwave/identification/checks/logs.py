@@ -13,8 +13,7 @@ from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.slopes import speed_per_slope
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED, Check, HeldOut
 from strainwave.messages import as_option, listed
 from strainwave.orders.shaft_pair import Ratio
 from strainwave.questions import NUMBER

@@ -18,10 +18,8 @@ from strainwave.identification.experiments.motion_log import MotionLog, per_torq
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, Check, HeldOut, is_uncertain
 from strainwave.messages import as_option
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.torque_ripple import ripple

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import error_in_words
+from strainwave.identification.results.file_result import Check, error_in_words
 from strainwave.statistics.residuals import shape
 
 Array = NDArray[np.float64]

@@ -15,8 +15,7 @@ from strainwave.identification.checks.mistakes import MAX_FACTOR_LEFT, nearest, 
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import Check, FileEstimate
 from strainwave.messages import as_option
 from strainwave.statistics.linear_fit import solved
 

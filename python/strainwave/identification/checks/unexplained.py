@@ -16,8 +16,7 @@ from strainwave.identification.checks.mistakes import MISTAKEN
 from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import Check, FileEstimate
 from strainwave.kinematics import StrainWave
 from strainwave.messages import as_option
 from strainwave.statistics.scale import noise_sigma

@@ -209,8 +209,7 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named, pictures_of
-        from strainwave.identification.results.picture_plot import pictures_figure
+        from strainwave.identification.results.pictures import part_named, pictures_figure, pictures_of
 
         part = part_named(self, record)
         return pictures_figure(pictures_of(self, record), f"Measured and predicted {_channels_of(part, len(self.parts) > 1)}")
@@ -228,8 +227,7 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name, or the record has no time
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named
-        from strainwave.identification.results.residual_spectrum import spectrum_figure
+        from strainwave.identification.results.pictures import part_named, spectrum_figure
 
         part = part_named(self, record)
         return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")

@@ -10,6 +10,7 @@ import numpy as np
 
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
+from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
@@ -36,21 +37,37 @@ from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_m
 from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.experiments.drive_log import ENCODERS
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, turnover_speed
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
-from strainwave.identification.kinds.two_encoders import orders_of, with_error
+from strainwave.identification.kinds.two_encoders import (
+    orders_of,
+    picture_of_turn,
+    with_error,
+)
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import picture_of_friction, picture_of_turn
-from strainwave.identification.results.determined import PATH as STEADY, friction_at
-from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.combined_parameter import LOAD as INERTIA, MOTOR
+from strainwave.identification.results.file_result import (
+    BEHIND_GEAR,
+    MAX_SHARE_OF_PLAIN,
+    Check,
+    FileEstimate,
+    FileResult,
+    HeldOut,
+    is_uncertain,
+)
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
-from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
-from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
-from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
+from strainwave.identification.results.identifiability import (
+    MAX_SIGMA_OF_PHASE,
+    PriorOfSet,
+    moved,
+    priors_of,
+    priors_of_undetermined,
+)
+from strainwave.identification.results.pictures import Picture
+from strainwave.identification.results.steady_friction import PATH as STEADY, friction_at
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
@@ -74,6 +91,7 @@ CHECKS_OF = {  # numbers of the drive by which estimates scale, and the checks o
     "torque constant": {CONSTANT_BY_VOLTAGE, INERTIA_IN_TWO_WAYS},
 }
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
+SPEED_BINS = 16  # of each direction of motion, with as many samples each
 
 
 def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
@@ -440,3 +458,30 @@ def _at_one_speed(best: MotionCandidate, spread: Mapping[str, float], apart: Map
     coulomb = float(np.hypot(at_speed.sigma, split * speed))
     yield FileEstimate(COULOMB, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
     yield FileEstimate(VISCOUS, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
+
+
+def picture_of_friction(fit: Fit, unit: str) -> Picture:
+    """Return the picture of friction over the speed of a log along its motion, means of what is left added to its law.
+
+    Args:
+        fit: of the log
+        unit: of the friction, N.m, or A if the torque constant is not known
+    """
+    part = fit.parts[0]
+    log, drive = part.experiment, part.model
+    assert isinstance(log, MotionLog)
+    rows = log.motion.rows
+    speed, left = log.motion.speed[rows], part.residuals[0] / per_torque(drive, log.effort)
+    load = np.abs(transmitted_torque(log, drive)[rows]) / abs(drive.gear.kinematics.ratio)
+    bins = [
+        each
+        for way in (-1.0, 1.0)
+        for each in np.array_split(np.flatnonzero(way * speed > 0.0)[np.argsort(speed[way * speed > 0.0])], SPEED_BINS)
+        if len(each)
+    ]
+    means = np.array([[float(np.mean(series[each])) for series in (speed, left, load)] for each in bins]).reshape(-1, 3).T
+    table = FrictionTable(np.abs(means[0]), np.zeros(len(bins)), load=means[2])
+    friction = np.sign(means[0]) * table.predict(drive.gear, [], np.zeros(0))[0][0]
+    columns = {"speed": means[0], "friction": friction + means[1], "modelled": friction}
+    units = {"speed": "rad/s", "friction": unit, "modelled": unit}
+    return Picture(Recording(columns, units), "table", "friction, at the input", "friction over speed")

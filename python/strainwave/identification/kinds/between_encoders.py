@@ -16,15 +16,16 @@ from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
+from strainwave.identification.experiments.driven_log import DrivenLog
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
 from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import curves_of_shafts, picture_of_twist
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.combined_parameter import MOTOR
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, Check, FileEstimate, FileResult, is_uncertain
 from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
-from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.statistics.residuals import correlation_length
 
@@ -341,3 +342,33 @@ def _spring(found: Any, before: Any, reach: float) -> Any:
     if isinstance(found, stiffness.ThreeSegment) and found.t2 > reach:
         return found.replace(k3=before.k3, t2=max(before.t2, reach))
     return found
+
+
+def picture_of_twist(fit: Fit) -> Picture:
+    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits."""
+    part = fit.parts[0]
+    log, gear = part.experiment, part.model.gear
+    assert isinstance(log, DrivenLog)
+    turned = log.angle / gear.kinematics.ratio - gear.kinematic_error.error(log.angle)
+    measured, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {
+        "torque": log.gear_torque(part.model),
+        "twist": measured - modelled.mean(),
+        "modelled": modelled - modelled.mean(),
+    }
+    units = {"torque": "N.m", "twist": "rad", "modelled": "rad"}
+    return Picture(Recording(columns, units), "loop", "twist, at the output", "twist over torque")
+
+
+def curves_of_shafts(fit: Fit) -> Recording:
+    """Return the angle between the shafts in a log and its prediction along the motion of the input.
+
+    Returns:
+        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`
+    """
+    part = fit.parts[0]
+    log: Any = part.experiment
+    turned = log.angle / part.model.gear.kinematics.ratio
+    error, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {"time": log.time, "transmission_error": error - error.mean(), "modelled": modelled - error.mean()}
+    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"})

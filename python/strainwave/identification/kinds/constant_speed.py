@@ -21,11 +21,9 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, measured
 from strainwave.identification.reading.sides import pair
-from strainwave.identification.results.determined import MIN_SPEEDS
-from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
-from strainwave.identification.results.ratio import with_ratio
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED, FileResult
+from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio
+from strainwave.identification.results.steady_friction import MIN_SPEEDS
 from strainwave.messages import listed
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 

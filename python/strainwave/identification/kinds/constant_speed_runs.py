@@ -23,10 +23,11 @@ from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
-from strainwave.identification.results.determined import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
-from strainwave.identification.results.undetermined import with_friction_at
+from strainwave.identification.results.identifiability import with_friction_at
+from strainwave.identification.results.pictures import Picture
+from strainwave.identification.results.steady_friction import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.messages import listed
 from strainwave.statistics.residuals import rms
 from strainwave.statistics.scale import SIGNIFICANCE_SIGMA

@@ -33,21 +33,25 @@ from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
 from strainwave.identification.reading.sides import pair, side_of_table
-from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
-from strainwave.identification.results.curves import curves_of
-from strainwave.identification.results.determined import (
+from strainwave.identification.results.file_result import FileResult, HeldOut
+from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
+from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before
+from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.prediction import (
+    Prediction,
+    changes_of,
+    friction_directions,
+    judged,
+    model_error,
+    slopes_by_numbers,
+)
+from strainwave.identification.results.steady_friction import (
     AT_SPEEDS,
     MIN_SPEEDS,
     best_known_friction,
     different_speeds,
     friction_at_speeds,
 )
-from strainwave.identification.results.file_result import FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
-from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import JudgedFit
-from strainwave.identification.results.prediction import Prediction, judged, model_error
-from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import solved

@@ -19,7 +19,8 @@ from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.changes import (
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import (
     ANGLE,
     DELAY,
     DRY,
@@ -34,12 +35,13 @@ from strainwave.identification.results.changes import (
     ZERO,
     Direction,
     PartChange,
+    Prediction,
     changes_of,
     friction_directions,
+    judged,
     slopes_by_numbers,
+    validations,
 )
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.prediction import Prediction, judged, validations
 from strainwave.messages import listed, one_line
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.torque_ripple import ripple

@@ -14,8 +14,9 @@ from strainwave.identification.candidates.warming import Warming, friction_over_
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.pictures import Picture
 from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]

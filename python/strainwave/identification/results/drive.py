@@ -21,10 +21,9 @@ from strainwave.identification.candidates.plain import from_motion_to_motion
 from strainwave.identification.candidates.torque_place import frictionless
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.combined_parameter import CombinedParameter, distance
+from strainwave.identification.results.combined_parameter import LOAD, MOTOR, CombinedParameter, distance, drive_of
 from strainwave.identification.results.file_result import BEHIND_GEAR, IN_CURRENT, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import is_of, source_of
-from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
 from strainwave.parameters import gear_numbers, plain
 

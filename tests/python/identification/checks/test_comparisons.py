@@ -17,9 +17,8 @@ from strainwave.identification.checks.comparisons import (
     with_start_set,
 )
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import Check, FileEstimate, FileResult
 from strainwave.typeset import percent
 
 from tests.support.samples import sample

@@ -17,8 +17,7 @@ from strainwave.identification.checks.logs import (
 )
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import Check, HeldOut
 from strainwave.orders.two_encoders import transmission_error
 
 from tests.python.identification.candidates.test_motion import ANGLE, RATIO, SPEED, TIME, TRUTH, drive, torque

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.identify import Identified
+from strainwave.identification.results.combined_parameter import APART, TOGETHER
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.motor_inertia import APART, TOGETHER
 
 from tests.python.identification.candidates.test_elastic import TRUTH, run
 
