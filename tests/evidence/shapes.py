@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import strainwave as sw
-from strainwave.identification.checks.shape import NAME
+from strainwave.identification.checks.unexplained import NAME
 from strainwave.identification.reading.mapping import FileMapping
 
 COUNT = 200

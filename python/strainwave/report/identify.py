@@ -12,7 +12,7 @@ import numpy as np
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import AGREEMENT
-from strainwave.identification.checks.shape import has_small_shape
+from strainwave.identification.checks.unexplained import has_small_shape
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS

@@ -1,8 +1,8 @@
-"""Checks of one file: its sizes against the start set and against the limits of gears."""
+"""Checks of one file: its sizes against the start set and against the limits of gears; likely mistakes in a unit."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.checks.mistakes import MAX_FACTOR_LEFT, nearest, times, wrong_units
+from strainwave.files.units import convert
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
@@ -38,6 +38,12 @@ SIZE_TOLERANCE = 1e-6  # relative: torques that differ by less have one size
 END_TOLERANCE = 1e-9  # relative: torques that differ by less are at the end of the range
 REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft about to slide
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
+MAX_FACTOR_LEFT = 4.0  # a mistake explains a factor if it leaves a smaller one
+# What the header of a column may name wrongly, and what it may be.
+MISTAKEN = {
+    "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
+    "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
+}  # fmt: skip
 
 
 def input_speed(speed: Array, source: str) -> Check:
@@ -313,3 +319,31 @@ def hints_of_levels(table: Recording) -> Iterator[str]:
     speed = table["speed"]
     if (speed > 0.0).all() or (speed < 0.0).all():
         yield "it has one direction only: a zero error of the torque is counted as Coulomb friction; measure both"
+
+
+# ---- Mistakes in units -----------------------------------------------------------------------------------------------
+
+
+def wrong_units(quantity: str, unit: str) -> dict[str, float]:
+    """Return mistakes in the unit of a quantity, and the factor by which each makes it too large."""
+    return {f"the {quantity} is in {other}, not in {unit}": convert(1.0, unit, other) for other in MISTAKEN.get(unit, ())}
+
+
+def nearest(factor: float, mistakes: Mapping[str, float]) -> tuple[str, float]:
+    """Return the mistake that explains a factor best, in words, and the logarithm that it leaves; no words if none does.
+
+    >>> nearest(900.0, {"the torque is in mN.m, not in N.m": 1000.0})[0]
+    'perhaps the torque is in mN.m, not in N.m; '
+    """
+    distances = {name: abs(float(np.log(factor / size))) for name, size in mistakes.items()}
+    name, least = min(distances.items(), key=lambda item: item[1], default=("", np.inf))
+    return f"perhaps {name}; " if least < np.log(MAX_FACTOR_LEFT) else "", least
+
+
+def times(factor: float) -> str:
+    """Return a factor in words.
+
+    >>> times(1234.0)
+    '1 234 times'
+    """
+    return f"{factor:.3g} times" if factor < 100.0 else f"{factor:,.0f} times".replace(",", " ")

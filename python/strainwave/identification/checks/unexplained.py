@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.checks.mistakes import MISTAKEN
+from strainwave.identification.checks.sizes import MISTAKEN
 from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.file_result import Check, FileEstimate
+from strainwave.identification.results.file_result import Check, FileEstimate, error_in_words
 from strainwave.kinematics import StrainWave
 from strainwave.messages import as_option
+from strainwave.statistics.residuals import shape
 from strainwave.statistics.scale import noise_sigma
 from strainwave.typeset import quantity
 
@@ -31,6 +32,10 @@ MAX_SHARE_OF_LOOP = 0.1
 MAX_SHARE_OF_TORQUE = 0.3
 MAX_SHARE_OF_PRESLIDING = 0.5  # on data held out
 MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by more from the gear's to be another one
+NAME = "shape of what is left"
+MAX_CHANCE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
+MAX_SHARE_OF_SHAPE = 0.25  # of what varies: models of real joints leave up to 16 %
+MIN_SHARE_OF_SHAPE = 0.01  # of what varies: a smaller one is no remark
 
 
 @dataclass(frozen=True)
@@ -227,3 +232,46 @@ def _renamed(recording: Recording, names: dict[str, str]) -> Recording:
         {names.get(name, name): recording.unit(name) for name in recording.names},
         recording.title,
     )
+
+
+# ---- Shape of residuals ----------------------------------------------------------------------------------------------
+
+
+def has_small_shape(check: Check) -> bool:
+    """True for a check of a shape that is there, and too small to fail."""
+    least = MIN_SHARE_OF_SHAPE / MAX_SHARE_OF_SHAPE * check.limit
+    return check.name == NAME and least < check.value and not check.failed
+
+
+class Judged(NamedTuple):
+    """Check of the shape of residuals, None for too few samples, and a remark if the shape is significant but small."""
+
+    checks: tuple[Check, ...] = ()
+    remarks: tuple[str, ...] = ()
+
+
+def judged_shape(
+    residual: Array, abscissae: Mapping[str, Array], varies: float, unit: str, source: str, *, ordered: bool = False
+) -> Judged:
+    """Return the check that what a model leaves has no large shape, and a remark on a small one.
+
+    Args:
+        residual: measured less modelled, in the order of the samples, shape (n,)
+        abscissae: over which it may repeat, by their names in words, each of shape (n,)
+        varies: root mean square of the signal about its mean
+        unit: of both
+        source: name of the file
+        ordered: True if the samples are in the order of their only abscissa
+    """
+    tried = {name: shape(residual, over, ordered=ordered) for name, over in abscissae.items()}
+    sizes = {name: each.size if each.chance < MAX_CHANCE else 0.0 for name, each in tried.items() if each is not None}
+    if not sizes:
+        return Judged()
+    name = max(sizes, key=lambda each: sizes[each])
+    size, limit = sizes[name], MAX_SHARE_OF_SHAPE * varies
+    words = f"what the model leaves has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
+    check = Check(
+        NAME, source, size, limit, unit, size > limit, words if size > limit else "",
+        "look at the residual below the picture: the model lacks what it shows there, or a column is of another joint",
+    )  # fmt: skip
+    return Judged((check,), (words,) if MIN_SHARE_OF_SHAPE * varies < size <= limit else ())

@@ -25,7 +25,9 @@ from strainwave.identification.candidates.rotor import (
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
+    RATIO_BY_ORDERS,
     RATIO_OF_ENCODERS,
+    checks_of_motion,
     held_out_error,
     ratio_of_encoders,
     speed_against_angle,
@@ -33,9 +35,8 @@ from strainwave.identification.checks.logs import (
     torque_constant_by_voltage,
     unit_of_torque,
 )
-from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_motion
-from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
+from strainwave.identification.checks.unexplained import Judged, judged_shape
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, turnover_speed

@@ -14,7 +14,6 @@ from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
-from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import (
     friction_of_table,
     hints_of_levels,
@@ -22,11 +21,10 @@ from strainwave.identification.checks.sizes import (
     levels_of_table,
     opposes_motion,
 )
-from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.kinds.kind import Kind, Ranked
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.motions import stretches

@@ -1,15 +1,17 @@
-"""The common base of the kinds of measurement."""
+"""The common base of the kinds of measurement, and remarks that they share."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from strainwave.files.gear_set import GearSet
+from strainwave.files.ratings import check_ratings
+from strainwave.files.recording import Recording
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
@@ -125,3 +127,23 @@ class Kind(ABC):
             ValueError: files of this kind are not predicted, or the saved gear lacks what a prediction needs
         """
         raise ValueError(f"it is {self.title}: {NOT_PREDICTED}")
+
+
+# ---- Remarks ---------------------------------------------------------------------------------------------------------
+
+
+def exceeded(start: GearSet, load: Recording) -> Iterator[str]:
+    """Yield the ratings of a gear that a measurement exceeded."""
+    yield from (f"beyond what the maker allows: {check}" for check in check_ratings(start, load) if check.exceeded)
+
+
+def thinned(samples: int, taken: int) -> Iterator[str]:
+    """Yield how many samples were compared, if these are not all."""
+    if samples > taken:
+        yield f"of its {samples} samples {taken} were compared"
+
+
+def unused(recording: Recording, used: Sequence[str]) -> Iterator[str]:
+    """Yield the columns that the fit does not use."""
+    if names := [name for name in recording.names if name not in used]:
+        yield f"not used: {', '.join(names)}"

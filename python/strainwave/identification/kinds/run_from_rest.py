@@ -14,9 +14,8 @@ from strainwave.identification.dynamics.log import LogFit, fit_log, free_paramet
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import InfluenceOfKept, influence
-from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
-from strainwave.identification.kinds.shafts import put_sided
+from strainwave.identification.kinds.kind import Kind, exceeded, thinned, unused
+from strainwave.identification.kinds.log import put_sided
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised

@@ -15,13 +15,11 @@ from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.ranking import rank_loop
-from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
-from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.kinds.kind import Kind, Ranked
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
+from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.channels import Channel
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.checks.motion import ratio_by_orders
+from strainwave.identification.checks.logs import ratio_by_orders
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping
 

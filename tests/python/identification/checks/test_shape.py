@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from strainwave.demo import torsion_rig
-from strainwave.identification.checks.shape import MAX_SHARE_OF_SHAPE, NAME, has_small_shape, judged_shape
+from strainwave.identification.checks.unexplained import MAX_SHARE_OF_SHAPE, NAME, has_small_shape, judged_shape
 from strainwave.report.identify import identify_report
 
 from tests.evidence import shapes
