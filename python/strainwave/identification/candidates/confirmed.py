@@ -19,7 +19,7 @@ from strainwave.identification.candidates.ripple import by_full_band
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE
 from strainwave.identification.fitting.fit import solved_problem
 from strainwave.identification.results.file_result import HeldOut
-from strainwave.identification.results.steady_friction import PATH as STEADY
+from strainwave.identification.results.steady_friction import STEADY_FRICTION
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import rms
 
@@ -118,7 +118,7 @@ def with_sum(numbers: Mapping[str, Any], speed: float) -> dict[str, Any]:
     """Return numbers by their paths with the friction at the one speed of a record [rad/s], if it has one."""
     whole = dict(numbers)
     if speed:
-        whole[STEADY] = whole[f"{INPUT}coulomb"] + speed * whole.get(f"{INPUT}viscous", 0.0)
+        whole[STEADY_FRICTION] = whole[f"{INPUT}coulomb"] + speed * whole.get(f"{INPUT}viscous", 0.0)
     return whole
 
 
@@ -149,7 +149,7 @@ def _numbers(candidate: MotionCandidate) -> dict[str, float]:
     model, law = candidate.model, candidate.model.law
     numbers = dict(zip(map(plain, model.free), candidate.values, strict=True))
     if model.one_speed:
-        numbers[STEADY] = float(law.coulomb + model.one_speed * law.viscous)
+        numbers[STEADY_FRICTION] = float(law.coulomb + model.one_speed * law.viscous)
         return numbers
     fast = float(np.quantile(np.abs(model.log.motion.speed[model.log.motion.rows]), FAST_SHARE))
     return {**numbers, OF_ALL_LAWS[0]: float(law.coulomb), OF_ALL_LAWS[1]: slope_of(law, fast)}

@@ -19,20 +19,25 @@ from strainwave.identification.results.combined_parameter import (
     distance,
     is_friction,
 )
-from strainwave.identification.results.file_result import Check, FileEstimate, FileResult
-from strainwave.identification.results.steady_friction import PATH as STEADY, friction_of, has_loss, mean_load, measured_speeds
+from strainwave.identification.results.file_result import (
+    COULOMB_PATH,
+    GRAVITY_PATH,
+    LOAD_INERTIA,
+    Check,
+    FileEstimate,
+    FileResult,
+)
+from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
 from strainwave.typeset import percent
 
 AGREEMENT = "agreement of files"  # name of the check of two files
 SCALE = "torques of two files"  # likewise, of all their torques together
-COULOMB = "gear.friction_input.coulomb"
-GRAVITY = "load.gravity_torque"
-OF_LOAD = ("load.inertia", GRAVITY)
-MAX_CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
+LOAD_PATHS = (LOAD_INERTIA, GRAVITY_PATH)
+MAX_CHANCE_OF_START_SET = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
 SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
-MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
+MAX_PARAMETERS_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
 REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
@@ -76,12 +81,12 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     if not compared:
         return
     squares = sum((each.off / each.sigma) ** 2 for each in compared)
-    limit = float(chdtri(len(compared), MAX_CHANCE))
+    limit = float(chdtri(len(compared), MAX_CHANCE_OF_START_SET))
     apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
-    more = f", and {len(apart) - MAX_LISTED} more" if len(apart) > MAX_LISTED else ""
+    more = f", and {len(apart) - MAX_PARAMETERS_LISTED} more" if len(apart) > MAX_PARAMETERS_LISTED else ""
     yield Check(
         "numbers of the start set", listed(dict.fromkeys(each.source for each in apart)), squares, limit, "1", squares > limit,
-        f"the files contradict the set {start.name}: {'; '.join(map(str, apart[:MAX_LISTED]))}{more}",
+        f"the files contradict the set {start.name}: {'; '.join(map(str, apart[:MAX_PARAMETERS_LISTED]))}{more}",
         "start from the set of this gear (size and ratio), or see whether units, sides, ratio and torque constant are right",
     )  # fmt: skip
 
@@ -94,7 +99,7 @@ def gravity_in_ratings(
     if allowed == 0.0:
         return
     for each in parameters:
-        if each.estimate.path == GRAVITY and each.estimate.unit == "N.m" and each.source not in failed:
+        if each.estimate.path == GRAVITY_PATH and each.estimate.unit == "N.m" and each.source not in failed:
             share = each.estimate.value / allowed
             yield Check(
                 "gravity within the ratings", each.source, share, MAX_GRAVITY_OF_RATING, "1", share > MAX_GRAVITY_OF_RATING,
@@ -161,10 +166,10 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
             apart.setdefault(pair, []).append(_contradiction(*(each.of_file(file) for file in pair)))
     for (one, other), found in apart.items():
         found.sort(key=lambda each: -each.apart)
-        more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
+        more = f", and {len(found) - MAX_PARAMETERS_LISTED} more" if len(found) > MAX_PARAMETERS_LISTED else ""
         yield Check(
             AGREEMENT, f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
-            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}"
+            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_PARAMETERS_LISTED])}{more}"
             f"{_taken(found[0], parameters, one, other)}",
             "see whether both files are of one joint, and whether sides, columns, units and the ratio are right for both; "
             "compare temperature, load, speed and lubricant; leave out a file of another gear",
@@ -179,7 +184,7 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
     logs = [each for each in files if not each.failed and not each.same_as and not each.refused]
     for one, other in combinations(logs, 2):
         pairs = [_log_ratio(mine, its) for mine, its in _same_numbers(one, other)]
-        if not any(path in OF_LOAD for path, *_ in pairs) or all(path in OF_LOAD for path, *_ in pairs):
+        if not any(path in LOAD_PATHS for path, *_ in pairs) or all(path in LOAD_PATHS for path, *_ in pairs):
             continue
         off, sigma = (np.array([each[place] for each in pairs]) for place in (1, 2))
         weight = sigma**-2 / np.sum(sigma**-2)
@@ -197,7 +202,7 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
 
 def _same_numbers(one: FileResult, other: FileResult) -> Iterator[tuple[FileEstimate, FileEstimate]]:
     """Yield the torques that two logs both determine: load, and Coulomb friction of one law."""
-    compared = (*OF_LOAD, *([COULOMB] if one.friction == other.friction else []))
+    compared = (*LOAD_PATHS, *([COULOMB_PATH] if one.friction == other.friction else []))
     there = {(each.path, each.law): each for each in other.estimates if not each.why}
     for each in one.estimates:
         its = there.get((each.path, each.law))
@@ -219,7 +224,7 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
     """
     logs = [each for each in files if each.recognised and each.recognised.kind == "log" and each.estimates and not each.same_as]
     remarks = dict[str, list[str]]()
-    for path in OF_LOAD:
+    for path in LOAD_PATHS:
         own = {log.name: next((each for each in log.estimates if each.path == path), None) for log in logs}
         known = {name: each for name, each in own.items() if each is not None and not each.why}
         for first, reference in list(known.items())[:1]:
@@ -233,8 +238,8 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
 def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     """Return in words how a number of a load differs from that of another log; empty if it does not."""
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
-        shows = reference.path == GRAVITY and reference.value > MAX_DISTANCE * reference.sigma
-        return f"no {GRAVITY} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+        shows = reference.path == GRAVITY_PATH and reference.value > MAX_DISTANCE * reference.sigma
+        return f"no {GRAVITY_PATH} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
     found = _contradiction(estimate, reference)
     return found.words if estimate.unit == reference.unit and found.apart > MAX_DISTANCE else ""
 
@@ -282,7 +287,7 @@ class _Contradiction(NamedTuple):
 
 def _taken(found: _Contradiction, parameters: Sequence[CombinedParameter], one: str, other: str) -> str:
     """Return which of two files a parameter is taken from, and why; empty if it is from neither."""
-    path = COULOMB if found.path == STEADY else found.path
+    path = COULOMB_PATH if found.path == STEADY_FRICTION else found.path
     source = next((each.source for each in parameters if each.estimate.path == path and each.source in (one, other)), "")
     if not source:
         return ""

@@ -48,7 +48,7 @@ MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the neare
 MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
 USUAL_UNITS = {"speed": ("rad/s", "deg/s", "rpm", "rev/s"), "angle": ("rad", "deg", "rev")}
 MAX_OFF_UNIT = 0.1  # relative: a unit that is nearer explains a factor
-RECORD_BLOCKS = 10  # over which residuals of the voltage scatter
+VOLTAGE_BLOCKS = 10  # over which residuals of the voltage scatter
 RATIO_BY_ORDERS = "ratio by orders"  # name of the check
 STANDARD_GRAVITY = 9.81  # m/s2
 MAX_OF_ANOTHER_UNIT = 1.5  # times what the fit leaves with the angle in another unit or of the other side
@@ -195,8 +195,8 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
         return
     found = solved(columns, recording["voltage"])
     left = recording["voltage"] - columns @ found
-    scores = [float(np.mean(each)) for each in np.array_split(left * speed, RECORD_BLOCKS)]
-    sigma = float(np.std(scores, ddof=1)) * len(left) / np.sqrt(RECORD_BLOCKS) / float(speed @ speed)
+    scores = [float(np.mean(each)) for each in np.array_split(left * speed, VOLTAGE_BLOCKS)]
+    sigma = float(np.std(scores, ddof=1)) * len(left) / np.sqrt(VOLTAGE_BLOCKS) / float(speed @ speed)
     induced = float(found[1])
     if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
         return

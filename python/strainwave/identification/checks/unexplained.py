@@ -32,8 +32,8 @@ MAX_SHARE_OF_LOOP = 0.1
 MAX_SHARE_OF_TORQUE = 0.3
 MAX_SHARE_OF_PRESLIDING = 0.5  # on data held out
 MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by more from the gear's to be another one
-NAME = "shape of what is left"
-MAX_CHANCE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
+SHAPE_OF_RESIDUALS = "shape of what is left"
+MAX_CHANCE_OF_SHAPE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
 MAX_SHARE_OF_SHAPE = 0.25  # of what varies: models of real joints leave up to 16 %
 MIN_SHARE_OF_SHAPE = 0.01  # of what varies: a smaller one is no remark
 
@@ -240,7 +240,7 @@ def _renamed(recording: Recording, names: dict[str, str]) -> Recording:
 def has_small_shape(check: Check) -> bool:
     """True for a check of a shape that is there, and too small to fail."""
     least = MIN_SHARE_OF_SHAPE / MAX_SHARE_OF_SHAPE * check.limit
-    return check.name == NAME and least < check.value and not check.failed
+    return check.name == SHAPE_OF_RESIDUALS and least < check.value and not check.failed
 
 
 class Judged(NamedTuple):
@@ -264,14 +264,14 @@ def judged_shape(
         ordered: True if the samples are in the order of their only abscissa
     """
     tried = {name: shape(residual, over, ordered=ordered) for name, over in abscissae.items()}
-    sizes = {name: each.size if each.chance < MAX_CHANCE else 0.0 for name, each in tried.items() if each is not None}
+    sizes = {name: each.size if each.chance < MAX_CHANCE_OF_SHAPE else 0.0 for name, each in tried.items() if each is not None}
     if not sizes:
         return Judged()
     name = max(sizes, key=lambda each: sizes[each])
     size, limit = sizes[name], MAX_SHARE_OF_SHAPE * varies
     words = f"what the model leaves has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
     check = Check(
-        NAME, source, size, limit, unit, size > limit, words if size > limit else "",
+        SHAPE_OF_RESIDUALS, source, size, limit, unit, size > limit, words if size > limit else "",
         "look at the residual below the picture: the model lacks what it shows there, or a column is of another joint",
     )  # fmt: skip
     return Judged((check,), (words,) if MIN_SHARE_OF_SHAPE * varies < size <= limit else ())

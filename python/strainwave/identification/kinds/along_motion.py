@@ -49,10 +49,13 @@ from strainwave.identification.kinds.two_encoders import (
     with_error,
 )
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.combined_parameter import LOAD as INERTIA, MOTOR
 from strainwave.identification.results.file_result import (
     BEHIND_GEAR,
+    BREAKAWAY_PATH,
+    COULOMB_PATH,
+    LOAD_INERTIA,
     MAX_SHARE_OF_PLAIN,
+    MOTOR_INERTIA,
     Check,
     FileEstimate,
     FileResult,
@@ -68,7 +71,7 @@ from strainwave.identification.results.identifiability import (
     priors_of_undetermined,
 )
 from strainwave.identification.results.pictures import Picture
-from strainwave.identification.results.steady_friction import PATH as STEADY, friction_at
+from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_at
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
@@ -76,14 +79,14 @@ from strainwave.statistics.determined_sum import DeterminedSum
 
 SLIDING_SPEED_FACTOR = 4.0  # of the speed at which friction turns its sign: beyond it the mean over both senses is within 0.1 %
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
-FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
-COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
-DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
+FRICTION_PARTS = ("friction_input", "friction_mesh")  # parts of the gear
+VISCOUS_PATH = f"{INPUT}viscous"
+DRY_TORQUES = (COULOMB_PATH, BREAKAWAY_PATH)  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
-DETENT, DEPTH = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
+DETENT_PATHS, DEPTH_PATHS = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
 ONE_WAVE = "the motion goes nearly one way: a detent and friction over the angle are one wave; record both directions"
 DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
-OF_ROTOR = (
+UNKNOWN_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=NUMBER"
 )
@@ -123,9 +126,11 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
-        if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
+        if rotor := next(
+            (each for each in between.estimates if each.path == MOTOR_INERTIA and not each.why and not in_current), None
+        ):
             squared = drive.gear.kinematics.ratio**2
-            taken = replace(taken, drive=drive.replace({MOTOR: rotor.value}), rotor=rotor.sigma * squared)
+            taken = replace(taken, drive=drive.replace({MOTOR_INERTIA: rotor.value}), rotor=rotor.sigma * squared)
             judged, estimates = _judged(with_rotor(best, rotor.value), apart, taken, known)
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
@@ -163,7 +168,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         *_shares(best.fit, file.regressors),
         *shaped.remarks,
     )
-    dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
+    dry = [each for each in estimates if each.path == COULOMB_PATH and (not each.why or each.in_combination)]
     of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
     pictures = (Picture(predicted), *of_friction, *between.pictures)
     return (
@@ -202,8 +207,8 @@ def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
     """Return the models of a log, best first."""
     priors = {path: (value, RELATIVE_SIGMA_OF_GIVEN * value) for path, value in taken.given.items()}
     logs = [log] if taken.in_current else bands(log, taken.drive)
-    if INERTIA in taken.given and not taken.motor_known:
-        return fit_motion(logs, taken.drive.replace({INERTIA: taken.given[INERTIA]}), inertia=MOTOR)
+    if LOAD_INERTIA in taken.given and not taken.motor_known:
+        return fit_motion(logs, taken.drive.replace({LOAD_INERTIA: taken.given[LOAD_INERTIA]}), inertia=MOTOR_INERTIA)
     return fit_motion(logs, taken.drive, priors=priors)
 
 
@@ -254,7 +259,7 @@ def _unchecked(taken: PreparedLog, file: Recognised, estimates: Sequence[FileEst
     elif "ratio" not in file.constants:
         values["ratio"] += ", of the start set"
     if effort == "joint_torque":
-        dry = next((each.value for each in estimates if each.path == COULOMB and not each.why), None)
+        dry = next((each.value for each in estimates if each.path == COULOMB_PATH and not each.why), None)
         at_output = "" if dry is None else f"; Coulomb friction at the output is {dry * ratio:.4g} N·m with any ratio"
         values["ratio"] += f" (friction at the input scales with it{at_output})"
     elif effort == "input_torque":
@@ -321,12 +326,12 @@ def _with_friction(
     loss is fitted with the friction of that file as its prior.
     """
     gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
-    laws = [part for part in FRICTION if getattr(gear, part) != getattr(before, part)]
-    earlier = COULOMB in map(plain, known.determined_by)
-    own = any(each.path == COULOMB and not each.why for each in estimates)
+    laws = [part for part in FRICTION_PARTS if getattr(gear, part) != getattr(before, part)]
+    earlier = COULOMB_PATH in map(plain, known.determined_by)
+    own = any(each.path == COULOMB_PATH and not each.why for each in estimates)
     if not laws:
         return known, estimates
-    if not known.determined & set(FRICTION) or (own and not earlier):
+    if not known.determined & set(FRICTION_PARTS) or (own and not earlier):
         return known.with_fit(gear, laws, estimates, name), estimates
     if "friction_mesh" in known.determined or not any(each.path == LOSSES[0] and not each.why for each in estimates):
         return known, estimates
@@ -348,10 +353,10 @@ def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
 
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     """Yield the check that a given inertia of the load agrees with the log."""
-    if INERTIA not in taken.given:
+    if LOAD_INERTIA not in taken.given:
         return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
-    given = drive.motor.inertia + drive.gear.input_inertia + taken.given[INERTIA] / drive.gear.kinematics.ratio**2
+    given = drive.motor.inertia + drive.gear.input_inertia + taken.given[LOAD_INERTIA] / drive.gear.kinematics.ratio**2
     off = (abs(shown - given) if taken.motor_known else max(given - shown, 0.0)) / given
     yield Check(
         "given inertia of the load", name, off, MAX_OFF_INERTIA, "1", off > MAX_OFF_INERTIA,
@@ -373,10 +378,10 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
     rotating: Any = drive.motor
     squared = drive.gear.kinematics.ratio**2
     independent = {  # parts of the torque that do not grow with the constant
-        INERTIA: (drive.motor.inertia + drive.gear.input_inertia) * squared,
-        MOTOR: drive.gear.input_inertia + taken.given.get(INERTIA, 0.0) / squared,
+        LOAD_INERTIA: (drive.motor.inertia + drive.gear.input_inertia) * squared,
+        MOTOR_INERTIA: drive.gear.input_inertia + taken.given.get(LOAD_INERTIA, 0.0) / squared,
     }
-    rotors = {INERTIA: taken.rotor, MOTOR: taken.rotor / squared}
+    rotors = {LOAD_INERTIA: taken.rotor, MOTOR_INERTIA: taken.rotor / squared}
     induced = {}
     if taken.log.effort == "voltage":
         induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
@@ -389,7 +394,7 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
         path = plain(estimate.path)
-        if best.model.one_speed and path in (COULOMB, VISCOUS):
+        if best.model.one_speed and path in (COULOMB_PATH, VISCOUS_PATH):
             continue
         law = encoder if path == "load.gravity_phase" else ""
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
@@ -406,13 +411,13 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             found = replace(found, why=BEHIND_GEAR)
         elif path in DRY_TORQUES and not best.log.both_ways:
             found = replace(found, sigma=np.inf, why=ONE_WAY)
-        elif path.startswith(DETENT) and is_one_wave(best.log):
+        elif path.startswith(DETENT_PATHS) and is_one_wave(best.log):
             found = replace(found, why=_one_wave(found, best), in_combination=True)
-        elif path.startswith(DEPTH) and best.model.one_speed:
+        elif path.startswith(DEPTH_PATHS) and best.model.one_speed:
             share = prior_of_viscous(best.model.law, best.model.one_speed)[1] * best.model.one_speed / best.model.law.coulomb
             found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
         elif is_uncertain(found.value, abs(turned) * unknown):
-            found = replace(found, why=OF_ROTOR)
+            found = replace(found, why=UNKNOWN_ROTOR)
         elif not found.is_phase:
             found = found.unless_uncertain()
         elif path != "load.gravity_phase":
@@ -443,22 +448,22 @@ def _at_one_speed(best: MotionCandidate, spread: Mapping[str, float], apart: Map
         spread, apart: standard deviations by blocks of the record, and by models that predict as well, by path
     """
     speed, law, fitted = best.model.one_speed, sliding(best.fit.parts[0].model), best.fit
-    weights = np.array([{COULOMB: 1.0, VISCOUS: speed}.get(plain(each.path), 0.0) for each in fitted.estimates])
+    weights = np.array([{COULOMB_PATH: 1.0, VISCOUS_PATH: speed}.get(plain(each.path), 0.0) for each in fitted.estimates])
     acting = np.flatnonzero(weights)
     variance = float(weights[acting] @ fitted.covariance[np.ix_(acting, acting)] @ weights[acting])
-    own = max(float(np.sqrt(max(variance, 0.0))), spread[STEADY])
-    at_speed = friction_at(speed, float(law.coulomb + speed * law.viscous), float(np.hypot(own, apart[STEADY])))
+    own = max(float(np.sqrt(max(variance, 0.0))), spread[STEADY_FRICTION])
+    at_speed = friction_at(speed, float(law.coulomb + speed * law.viscous), float(np.hypot(own, apart[STEADY_FRICTION])))
     if not best.log.both_ways:
         at_speed = replace(at_speed, sigma=np.inf, why=ONE_WAY)
     yield at_speed
-    both = DeterminedSum((COULOMB, VISCOUS), (1.0, speed), at_speed.value, at_speed.sigma, "N.m")
+    both = DeterminedSum((COULOMB_PATH, VISCOUS_PATH), (1.0, speed), at_speed.value, at_speed.sigma, "N.m")
     why = at_speed.why or (
         f"determined together, at the one speed of the record: {both}; the split is that of the start set within its spread"
     )
     together, (_, split) = not at_speed.why, prior_of_viscous(law, speed)
     coulomb = float(np.hypot(at_speed.sigma, split * speed))
-    yield FileEstimate(COULOMB, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
-    yield FileEstimate(VISCOUS, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
+    yield FileEstimate(COULOMB_PATH, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
+    yield FileEstimate(VISCOUS_PATH, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
 
 
 def picture_of_friction(fit: Fit, unit: str) -> Picture:

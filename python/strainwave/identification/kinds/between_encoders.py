@@ -22,8 +22,16 @@ from strainwave.identification.experiments.motion_log import MIN_INERTIA, Motion
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
-from strainwave.identification.results.combined_parameter import MOTOR
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, Check, FileEstimate, FileResult, is_uncertain
+from strainwave.identification.results.file_result import (
+    GRAVITY_PATH,
+    LOAD_INERTIA,
+    MAX_RELATIVE_SIGMA,
+    MOTOR_INERTIA,
+    Check,
+    FileEstimate,
+    FileResult,
+    is_uncertain,
+)
 from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
 from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import TransmissionError
@@ -34,12 +42,11 @@ Array = NDArray[np.float64]
 SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is there
 MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
-PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
+TORQUE_PARTS = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
 MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
 DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
 MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
-BREAKAWAY, STIFFNESS = "gear.hysteresis.breakaway", "gear.stiffness."
-GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
+ELEMENT_TORQUES, STIFFNESS_PATHS = "gear.hysteresis.breakaway", "gear.stiffness."
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
 
@@ -64,7 +71,7 @@ def between_encoders(
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
     of_gear = tuple(_estimates(found, scale, known, taken.in_current))
-    has_stiffness = any(each.path.startswith(STIFFNESS) and not each.why for each in of_gear)
+    has_stiffness = any(each.path.startswith(STIFFNESS_PATHS) and not each.why for each in of_gear)
     result = FileResult(
         source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
         remarks=tuple(_remarks(found, scale, taken)),
@@ -75,7 +82,7 @@ def between_encoders(
         ),
         between=found.fit,
     )  # fmt: skip
-    parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
+    parts = [*(() if taken.in_current else TORQUE_PARTS), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
     finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()
     return result, _with_parts(known, found, [part for part in parts if part not in known.determined - finer], result)
 
@@ -90,8 +97,8 @@ def _is_finer(found: ElasticCandidate, estimates: Sequence[FileEstimate], known:
         or any(each.why for each in own)
     ):
         return False
-    sigmas = [each.sigma for each in own if each.path.startswith(BREAKAWAY)]
-    sigmas += [entry.uncertainty or 0.0 for path, entry in known.gear_set.sources.items() if path.startswith(BREAKAWAY)]
+    sigmas = [each.sigma for each in own if each.path.startswith(ELEMENT_TORQUES)]
+    sigmas += [entry.uncertainty or 0.0 for path, entry in known.gear_set.sources.items() if path.startswith(ELEMENT_TORQUES)]
     apart = abs(float(np.sum(law.breakaway)) - float(np.sum(before.breakaway)))
     return len(law.breakaway) > len(before.breakaway) and apart < MIN_PART_SIGMA * float(np.linalg.norm(sigmas))
 
@@ -139,15 +146,17 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
     Raises:
         ValueError: the log determines neither
     """
-    if INERTIA in taken.given:
-        return _Scale(INERTIA, 0.0, 0.0)
-    gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
-    by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
+    if LOAD_INERTIA in taken.given:
+        return _Scale(LOAD_INERTIA, 0.0, 0.0)
+    gravity, inertia = (
+        each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY_PATH, LOAD_INERTIA)
+    )
+    by_gravity = [] if gravity is None else [_Scale(GRAVITY_PATH, gravity.sigma / gravity.value, taken.relative)]
     by_inertia = []
     if inertia is not None and taken.motor_known:
         rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
         common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
-        by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
+        by_inertia = [_Scale(LOAD_INERTIA, inertia.sigma / inertia.value, common)]
     known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
     if not known:
         missing = "is not known: give --constant motor_inertia=NUMBER"
@@ -211,8 +220,8 @@ def _motor(
 
     The output moves as its encoder measured it. That of a rigid gear lacks what the spring amplifies.
     """
-    load = next((each for each in of_gear if each.path == INERTIA and not each.why), None)
-    if taken.motor_known or (load is None and INERTIA not in taken.given):
+    load = next((each for each in of_gear if each.path == LOAD_INERTIA and not each.why), None)
+    if taken.motor_known or (load is None and LOAD_INERTIA not in taken.given):
         return
     drive, motion = best.fit.parts[0].model, best.log.motion
     carried: Any = found.drive.load
@@ -226,13 +235,13 @@ def _motor(
     model = replace(
         best.model, log=replace(best.log, extra=best.log.extra + torque),
         drive=drive.replace(load=loads.Inertia(inertia=MIN_INERTIA), motor=drive.motor.replace(inertia=START_MOTOR)),
-        free=(MOTOR, *(path for path in best.model.free if not path.startswith(("load.", MOTOR)))),
+        free=(MOTOR_INERTIA, *(path for path in best.model.free if not path.startswith(("load.", MOTOR_INERTIA)))),
     )  # fmt: skip
     candidate = replace(best, model=model, priors={})
-    (own,) = (each for each in candidate.fit.estimates if each.path == MOTOR)
+    (own,) = (each for each in candidate.fit.estimates if each.path == MOTOR_INERTIA)
     of_load = 0.0 if load is None else load.own / ratio**2
-    sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR]), of_load))
-    estimate = FileEstimate(MOTOR, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
+    sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR_INERTIA]), of_load))
+    estimate = FileEstimate(MOTOR_INERTIA, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
     of_recorder = RECORDER_BIAS * (own.value + input_inertia) if taken.log.effort == "current" else 0.0
     estimate = estimate.sharing(float(np.hypot(taken.rotor / ratio**2, of_recorder))).unless_uncertain()
     yield estimate.in_current() if taken.in_current else estimate
@@ -261,7 +270,7 @@ def _first_segment(found: ElasticCandidate, law: Any) -> bool:
 def _law_of(path: str, found: ElasticCandidate) -> str:
     part, gear = path.removeprefix("gear.").partition(".")[0], found.drive.gear
     if part == "hysteresis":
-        count = sum(each.path.startswith(BREAKAWAY) for each in found.fit.estimates)
+        count = sum(each.path.startswith(ELEMENT_TORQUES) for each in found.fit.estimates)
         return f"of {count} element{'s' if count > 1 else ''}"  # elements of different sets have nothing in common
     if path == "gear.stiffness.k1":
         return "three_segment"
@@ -276,11 +285,11 @@ def _inertias(
     The first is taken: it needs neither the inertia of the motor nor a current that is a mean. If both count from gravity, a
     wrong torque constant changes both alike but for the rotor.
     """
-    if scale.path != GRAVITY or INERTIA not in by_motor or not taken.motor_known:
+    if scale.path != GRAVITY_PATH or LOAD_INERTIA not in by_motor or not taken.motor_known:
         return
     places = {each.path: place for place, each in enumerate(found.fit.estimates)}
-    own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
-    drive, rigid = taken.drive, by_motor[INERTIA]
+    own, sigma = found.fit.estimates[places[LOAD_INERTIA]].value, float(found.sigmas[places[LOAD_INERTIA]])
+    drive, rigid = taken.drive, by_motor[LOAD_INERTIA]
     rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
     of_torque = [rigid.sigma, taken.rotor, taken.relative * rotor]
     by_torque = rigid.value, float(np.linalg.norm(of_torque))
@@ -291,7 +300,7 @@ def _inertias(
 def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iterator[str]:
     estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
     torque = "A" if taken.in_current else "N·m"
-    of = "gravity" if scale.path == GRAVITY else "inertia of the load"
+    of = "gravity" if scale.path == GRAVITY_PATH else "inertia of the load"
     yield (
         f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
         f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not determined. Torques count from "

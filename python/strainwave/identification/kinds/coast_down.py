@@ -28,7 +28,7 @@ MIN_PARTS, MIN_ROWS_OF_PART = 6, 4
 MIN_SPEED = 0.02  # of the first speed: below, the shaft comes to rest
 MAX_RISE = 0.1  # of the first speed, by which it may rise after its largest: a shaft without a motor only slows down
 MIN_FALL = 0.5  # of the largest speed
-OF_ROTOR = "inertia of the rotor and what is fixed to it [kg.m2], without the wave generator"
+ROTOR_ASKED = "inertia of the rotor and what is fixed to it [kg.m2], without the wave generator"
 
 
 class CoastDown(Kind):
@@ -68,7 +68,7 @@ class CoastDown(Kind):
             question = (
                 f"a run-down determines friction over inertia alone: Coulomb {dry:.4g} N·m and viscous {viscous:.4g} N·m·s/rad"
             )
-            is_known = Answer("the inertia is known", {"constants": {"motor_inertia": 1e-4}}, {"motor_inertia": OF_ROTOR})
+            is_known = Answer("the inertia is known", {"constants": {"motor_inertia": 1e-4}}, {"motor_inertia": ROTOR_ASKED})
             raise QuestionError(f"{question} for each kg·m² that turns", [is_known])
         load = file.constants.get("load_inertia", 0.0) / gear.kinematics.ratio**2
         inertia = (file.constants["motor_inertia"] + gear.input_inertia + load) * squared

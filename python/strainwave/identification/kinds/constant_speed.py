@@ -45,16 +45,16 @@ from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 
-MIN_ROWS = 20  # of a record at one speed: fewer are a table
+MIN_SPEED_ROWS = 20  # of a record at one speed: fewer are a table
 Together = tuple[tuple[FileResult, ...], GearSoFar]  # the results of several files, and the gear with them
 
 MAX_CHANGE = 0.05  # of the median speed, by which the speed of a record at one speed varies
 MIN_SHARE_OF_ROWS = 0.95  # of a record at one speed, whose speed varies by no more
 WHOLE_TURN = 0.98  # of a turn, from which on it counts as whole
-MAX_CHANCE = 1e-3  # probability, over all orders, that chance alone gives a wave
-JOINED = "records at constant speed"
-WHAT = "friction over the angle, at constant speed"
-TABLE = "a table of steady friction, of many files"
+MAX_CHANCE_OF_WAVE = 1e-3  # probability, over all orders, that chance alone gives a wave
+JOINED_NAME = "records at constant speed"
+ANGLE_TITLE = "friction over the angle, at constant speed"
+TABLE_TITLE = "a table of steady friction, of many files"
 
 
 class ConstantSpeed(Kind):
@@ -73,7 +73,9 @@ class ConstantSpeed(Kind):
         if efforts and angles and not measured(columns, "torque") and turning_points(angles[0].si):
             ways = [LOG_AT_RATE, Answer("friction before it slides", {"kind": "presliding"})]
             raise QuestionError(f"{pair(angles[0], efforts[0])} go to and fro without time", ways)
-        return bool(efforts) and (bool(angles) or not speeds or (len(speeds[0].si) > MIN_ROWS and is_one_speed(speeds[0].si)))
+        return bool(efforts) and (
+            bool(angles) or not speeds or (len(speeds[0].si) > MIN_SPEED_ROWS and is_one_speed(speeds[0].si))
+        )
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         quantities = dict.fromkeys(column.channel.quantity for column in columns if column.channel.measured)
@@ -123,7 +125,7 @@ class ConstantSpeed(Kind):
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit the friction table of the means of all files."""
-        return _or_refused(JOINED, joined, files, known)
+        return _or_refused(JOINED_NAME, joined, files, known)
 
     def fit_last(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
         """Fit friction over the angle of the input, around that which other files determine."""
@@ -353,7 +355,11 @@ def of_run(run: ConstantSpeedRun) -> FileResult:
     more = f", and {count - 3} speeds more" if count > 3 else ""
     kind = "constant speed" if count == 1 else f"{count} stretches at constant speed"
     return FileResult(
-        run.file.path.name, run.file, f"{kind}: {listed(ways)}{more}", remarks=(*run.file.remarks, *run.remarks), part_of=JOINED
+        run.file.path.name,
+        run.file,
+        f"{kind}: {listed(ways)}{more}",
+        remarks=(*run.file.remarks, *run.remarks),
+        part_of=JOINED_NAME,
     )
 
 
@@ -391,16 +397,16 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     warm = np.array([each.temperature for each in parts])[kept]
     if np.isfinite(warm).all():
         columns["temperature"], units["temperature"] = warm, "K"
-    file = Recognised(Path(JOINED), "friction", {}, {}, side, why, remarks, {}, Recording(columns, units))
+    file = Recognised(Path(JOINED_NAME), "friction", {}, {}, side, why, remarks, {}, Recording(columns, units))
     if different_speeds(speed[kept]) < MIN_SPEEDS:
         estimates, few = friction_at_speeds(speed, levels.torque, levels.covariance, side)
         estimates = tuple(each.resting_on(uncertain) for each in estimates)
         checks = tuple(opposes_motion(estimates, names))
         every = (*estimates, *gravity)
-        result = FileResult(JOINED, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE)
+        result = FileResult(JOINED_NAME, file, AT_SPEEDS, every, (*remarks, *few), checks, what=TABLE_TITLE)
         return (result,), with_friction_at(known, speed, estimates, side, names)
     result, after = fit_table(file, file.recording, uncertain, known)
-    return (replace(result, name=JOINED, what=TABLE, estimates=(*result.estimates, *gravity)),), after
+    return (replace(result, name=JOINED_NAME, what=TABLE_TITLE, estimates=(*result.estimates, *gravity)),), after
 
 
 def _signed(speed: Array, torque: Array) -> tuple[Array, tuple[str, ...]]:
@@ -457,7 +463,7 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     )
     read = replace(file, path=Path(name), why=why, remarks=())
     model, picture = "a parabola and ten orders of the turn", Picture(curves)
-    return (FileResult(name, read, model, estimates, tuple(remarks), (whole,), what=WHAT, pictures=(picture,)),), after
+    return (FileResult(name, read, model, estimates, tuple(remarks), (whole,), what=ANGLE_TITLE, pictures=(picture,)),), after
 
 
 def _estimates(found: PositionFit, uncertain: float, *, measured: bool) -> Iterator[FileEstimate]:
@@ -498,7 +504,7 @@ def _waves(found: PositionFit) -> dict[int, tuple[float, float, float]]:
     Of a wave that is none, the square of its size over its variance exceeds 2 ln(n / p) with the probability p in one of n
     orders (Rayleigh).
     """
-    least = float(np.sqrt(2.0 * np.log(max(len(found.law.cosine), 1) / MAX_CHANCE)))
+    least = float(np.sqrt(2.0 * np.log(max(len(found.law.cosine), 1) / MAX_CHANCE_OF_WAVE)))
     mean, by_name = float(np.mean(np.abs(found.friction))), {each.path: each for each in found.estimates}
     waves = {}
     for order in range(1, len(found.law.cosine) + 1):

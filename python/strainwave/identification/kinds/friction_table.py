@@ -57,11 +57,11 @@ from strainwave.statistics.residuals import correlation_length, rms
 
 Array = NDArray[np.float64]
 MAX_ROWS = 500  # of a table that was measured point by point
-MIN_ROWS = 4  # speeds of a table
+MIN_STRETCHES = 4  # speeds of a table
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
-SPEEDS = ("rad/s", "rpm", "rev/s")  # of tables of friction
-UNITS = {"speed": "rad/s", "torque": "N.m"}
-DRY = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
+SPEED_UNITS = ("rad/s", "rpm", "rev/s")  # of tables of friction
+TABLE_UNITS = {"speed": "rad/s", "torque": "N.m"}
+DRY_TORQUES = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
 
@@ -78,7 +78,7 @@ class SteadyFriction(Kind):
         """
         if not (speeds := measured(columns, "speed")) or not measured(columns, "torque", "current"):
             return False
-        if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_ROWS:
+        if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_STRETCHES:
             ways = [LOG_AT_RATE, Answer("a table of friction", {"kind": "friction"})]
             raise QuestionError(f"it has {rows} rows of speed and torque without time", ways)
         return True
@@ -154,7 +154,7 @@ def _check_speed_unit(speed: Column) -> None:
     fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
     ways = [
         Answer(f"{each}, {convert(fastest, each, 'rpm'):.0f} 1/min at most", {"units": {speed.label.name: each}})
-        for each in SPEEDS
+        for each in SPEED_UNITS
     ]
     raise QuestionError(f"the unit of {speed.name} is not stated, and a table of friction does not determine it", ways)
 
@@ -277,7 +277,7 @@ def _shared(best: FrictionCandidate, table: FrictionTable) -> dict[str, str]:
     sums = (
         DeterminedSum((each.path, loss), (1.0, held), each.value + kept, each.sigma, each.unit)
         for each in best.fit.estimates
-        if each.path.endswith(DRY)
+        if each.path.endswith(DRY_TORQUES)
     )
     return {f"gear.{each.paths[0]}": each.with_others for each in sums}
 
@@ -299,4 +299,4 @@ def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable
     yield from unused(recording, ("speed", "torque", "current", *CONDITIONS))
     if (left_out := int(np.sum(~best.fit.training))) > 0:
         yield f"{left_out} of {len(table.speed)} rows are outliers, and left out"
-    yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, UNITS))
+    yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, TABLE_UNITS))

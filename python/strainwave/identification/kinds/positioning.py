@@ -19,7 +19,7 @@ from strainwave.orders.positioning import Positioning, positioning
 from strainwave.questions import QuestionError
 
 MIN_INPUT_ORDER = 0.5  # of the input's turn: slower errors are named by the axis alone
-EFFORTS = ("torque", "current", "voltage", "speed", "vibration")
+OTHER_QUANTITIES = ("torque", "current", "voltage", "speed", "vibration")
 
 
 class PositioningSteps(Kind):
@@ -29,7 +29,7 @@ class PositioningSteps(Kind):
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
         """True for a commanded and a measured angle, or an angle with its error, without what drove it."""
-        angles, others = measured(columns, "angle"), measured(columns, *EFFORTS)  # type: ignore[arg-type]
+        angles, others = measured(columns, "angle"), measured(columns, *OTHER_QUANTITIES)  # type: ignore[arg-type]
         pairs = len(commanded(columns, "angle")) + len(measured(columns, "twist"))
         return len(angles) <= 1 and pairs + len(angles) == 2 and not others and pairs > 0
 

@@ -21,7 +21,6 @@ from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import (
-    ANGLE,
     DELAY,
     DRY,
     FRICTION,
@@ -29,10 +28,11 @@ from strainwave.identification.results.prediction import (
     INERTIA,
     MIN_CHANGE,
     MIN_CHANGE_TEXT,
-    MIN_SAMPLES,
+    MIN_SLIDING_SAMPLES,
     TEMPERATURE,
     VISCOUS,
     ZERO,
+    ZERO_OF_ANGLE,
     Direction,
     PartChange,
     Prediction,
@@ -156,7 +156,7 @@ class _PredictedLog(ComparedByFields):
     def band(self) -> Motion:
         """Motion in which changes are estimated: sliding in the narrowest pass band; all if there is little."""
         narrowest = bands(self.log, self.drive)[-1].motion
-        return narrowest if len(narrowest.rows) >= MIN_SAMPLES else self.log.motion.in_full_band()
+        return narrowest if len(narrowest.rows) >= MIN_SLIDING_SAMPLES else self.log.motion.in_full_band()
 
     def at(self, drive: Drive) -> Array:
         """Return the effort that a drive predicts, shape (m,)."""
@@ -209,9 +209,9 @@ class _PredictedLog(ComparedByFields):
         values = {each.name: each.value for each in changes}
         longest = MAX_DELAY_SAMPLES * self.log.motion.step
         later = min(max(values.pop(DELAY, self.delay) - self.delay, -longest), longest)
-        if ANGLE not in values:
+        if ZERO_OF_ANGLE not in values:
             return self._turned_by(-self.turned, later, values)
-        scale, across = values.get(GRAVITY, 1.0), self.values.get(GRAVITY, 1.0) * (values.pop(ANGLE) - self.turned)
+        scale, across = values.get(GRAVITY, 1.0), self.values.get(GRAVITY, 1.0) * (values.pop(ZERO_OF_ANGLE) - self.turned)
         return self._turned_by(float(np.arctan2(across, scale)), later, values | {GRAVITY: float(np.hypot(scale, across))})
 
     def _turned_by(self, more: float, later: float, values: Mapping[str, float]) -> _PredictedLog:
@@ -241,7 +241,7 @@ class _PredictedLog(ComparedByFields):
             scale = max(self.values.get(GRAVITY, 1.0), MIN_GRAVITY_SCALE)
             less, greater = (self.at(_turned_drive(drive, angle)) for angle in (-ANGLE_STEP, ANGLE_STEP))
             yield Direction(
-                ANGLE, "rad", 0.0, scale * (greater - less) / (2.0 * ANGLE_STEP), MIN_CHANGE,
+                ZERO_OF_ANGLE, "rad", 0.0, scale * (greater - less) / (2.0 * ANGLE_STEP), MIN_CHANGE,
                 f"{np.degrees(MIN_CHANGE):.2g}°", MAX_ANGLE_SIGMA, self.turned,
             )  # fmt: skip
 

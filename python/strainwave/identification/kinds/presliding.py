@@ -14,8 +14,8 @@ from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
 from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
-    BRISTLES,
-    SLIDING,
+    BRISTLE_LAWS,
+    SLIDING_LAWS,
     WITH_BREAKAWAY,
     AtRest,
     at_input,
@@ -120,8 +120,8 @@ def _with_bristles(
 ) -> tuple[GearSoFar, list[str]]:
     """Return the gear with the law that a loop determines, and remarks; the gear as it is if the loop fits no law of it."""
     sliding = known.sliding()
-    if not isinstance(sliding, SLIDING):
-        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLES) else "which has no bristles"
+    if not isinstance(sliding, SLIDING_LAWS):
+        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLE_LAWS) else "which has no bristles"
         return known, [f"the gear keeps its friction law, {sliding.name}, {why}; the numbers stand in the results"]
     if best.reach < 1.0 and slides is None:
         return known, []

@@ -22,13 +22,13 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
 from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.identifiability import MAX_LISTED, JudgedFit, with_set_before
+from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit, with_set_before
 from strainwave.identification.results.pictures import pictures_of_channels
 from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
 
 MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
-MAX_SHARE_LEFT = 0.5  # of what was unexplained before: a mistake that leaves more explains nothing
+MAX_SHARE_LEFT_BY_MISTAKE = 0.5  # of what was unexplained before: a mistake that leaves more explains nothing
 
 
 class RunFromRest(Kind):
@@ -101,7 +101,7 @@ def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: InfluenceOfKep
         others = [
             f"{each.path} = {each.value:.4g} {each.unit} (about {each.value + kept.shift_if_free[place]:.3g} {each.unit} would "
             f"leave {100.0 * kept.explained_share[place]:.0f} % less of the residuals' power)"
-            for place in wrong[:MAX_LISTED]
+            for place in wrong[:MAX_KEPT_LISTED]
             for each in [kept.kept[place]]
         ]
         yield f"the run contradicts what was kept: {' or '.join(others)}. Measure them, or free one"
@@ -128,7 +128,7 @@ def _with_cause(check: Check, found: Fit, file: Recognised, drive: Drive, free: 
         if not explained(again, check.source).failed:
             what = f"{cause.what[0].upper()}{cause.what[1:]}: then it is explained"
             return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
-        if float(unexplained(again).max()) < MAX_SHARE_LEFT * before:
+        if float(unexplained(again).max()) < MAX_SHARE_LEFT_BY_MISTAKE * before:
             what = f"Perhaps {cause.what}: then less is left"
             return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
     remedy = "no single mistake in sign, unit, side or ratio explains it; look at the plot, and at what is known of the drive"

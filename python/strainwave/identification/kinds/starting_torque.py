@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from strainwave.files.units import convert
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.kinds.at_rest import BREAKAWAY, with_breakaway
+from strainwave.identification.kinds.at_rest import with_breakaway
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import is_at_rest
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, channels, first, measured, needed
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.linear_fit import linear_fit
 
@@ -70,7 +70,7 @@ class StartingTorque(Kind):
             raise ValueError(f"all {len(torque)} rows have the same torque, so its scatter is not seen: record more digits")
         rounding = float(steps.min()) / sqrt(12.0 * len(torque))  # of a digit, if rows agree to the last one
         (level, *slopes), (sigma, *of_slopes) = found.values.tolist(), np.hypot(found.sigma, rounding).tolist()
-        estimate = FileEstimate(BREAKAWAY, "N.m", level, sigma, "").unless_uncertain()
+        estimate = FileEstimate(BREAKAWAY_PATH, "N.m", level, sigma, "").unless_uncertain()
         at = f" at {convert(given['temperature'].mean(), 'K', 'degC'):.3g} °C" if "temperature" in given else ""
         remarks = [
             f"{len(torque)} trials: {level:.4g} ± {sigma:.2g} N·m{at}{', without load' if 'load_torque' in varying else ''}"

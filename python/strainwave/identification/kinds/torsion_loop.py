@@ -35,7 +35,7 @@ from strainwave.statistics.determined_sum import DeterminedSum
 
 Array = NDArray[np.float64]
 
-MIN_ROWS = 4  # of a loop or branch
+MIN_LOOP_ROWS = 4  # of a loop or branch
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
 MAX_TWIST = 0.3  # rad of a gear at the output
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
@@ -43,7 +43,7 @@ MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
 MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
 SERIES = "series_stiffness"  # of a spring behind the gear
-FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
+FRICTION_KINDS = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
 class Torsion(Kind):
@@ -75,8 +75,8 @@ class Torsion(Kind):
         twist = _twist_of(columns)
         angle = twist or needed(columns, "angle", self.title)
         both, rows = pair(angle, torque), len(angle.si)
-        if rows < MIN_ROWS:
-            raise QuestionError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
+        if rows < MIN_LOOP_ROWS:
+            raise QuestionError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_LOOP_ROWS} are the least")
         turns = len(turning_points(angle.si))
         branch = "one branch of a torsion loop, which shows stiffness only"
         shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
@@ -101,7 +101,7 @@ class Torsion(Kind):
         """Return its turn: loops at the output go first, as they separate hysteresis from friction."""
         if "input_angle" not in file.recording:
             return self.name, 0
-        return ("torsion", 1) if FRICTION & set(kinds) or "run" not in kinds else ("run", 1)
+        return ("torsion", 1) if FRICTION_KINDS & set(kinds) or "run" not in kinds else ("run", 1)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit springs with Maxwell elements."""
@@ -192,7 +192,7 @@ def _twist_of(columns: Sequence[Column]) -> Column | None:
 def _series_stiffness(twist: Array, torque: Array) -> float:
     """Return the stiffness of a spring that is softer than any gear, if a torque is a multiple of its twist; else zero."""
     rows = np.isfinite(twist) & np.isfinite(torque)
-    if np.count_nonzero(rows) < MIN_ROWS or not (np.ptp(twist[rows]) > 0.0 and np.ptp(torque[rows]) > 0.0):
+    if np.count_nonzero(rows) < MIN_LOOP_ROWS or not (np.ptp(twist[rows]) > 0.0 and np.ptp(torque[rows]) > 0.0):
         return 0.0
     covariance = np.cov(twist[rows], torque[rows])
     stiffness = float(covariance[0, 1] / covariance[0, 0])

@@ -16,7 +16,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
 from strainwave.identification.reading.sides import pair, sides_of_angles
 from strainwave.identification.results.file_result import FileEstimate, FileResult
-from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
+from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar
 from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
@@ -60,7 +60,7 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
     if "kinematic_error" in known.determined or not law.order:
         return known
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
-    sigmas = {f"{AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
+    sigmas = {f"{ERROR_AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
     sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
     if not found.vibrates:
         return known.with_parts({"kinematic_error": law}, sigmas, f"{name}, at {found.speeds}" if found.speeds else name)
@@ -73,7 +73,7 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
     for each in found.orders:
         if each.shaft == "input" and each.significant:
             yield FileEstimate(
-                f"{AMPLITUDE} of order {each.order:g}",
+                f"{ERROR_AMPLITUDE} of order {each.order:g}",
                 "rad",
                 each.amplitude,
                 each.amplitude_sigma,

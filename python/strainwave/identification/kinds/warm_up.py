@@ -21,17 +21,17 @@ from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
-EFFORTS = ("joint_torque", "input_torque", "current")
+EFFORT_CHANNELS = ("joint_torque", "input_torque", "current")
 MIN_CHANGE_SIGMA = 2.0  # beyond which friction changes with the temperature
 TEMPERATURE_CLASSES = 24  # in the figure
 MIN_SAMPLES_PER_CLASS = 10
-ONE_WAY = "it moves one way only: a weight and an offset are in its friction, and its relative fall is not determined"
+ONE_WAY_FALL = "it moves one way only: a weight and an offset are in its friction, and its relative fall is not determined"
 
 
 def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     """Return friction over the temperature, and how it changes; None if a log does not determine it."""
     recording = file.recording
-    effort = next((name for name in EFFORTS if name in recording), None)
+    effort = next((name for name in EFFORT_CHANNELS if name in recording), None)
     if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < MIN_TEMPERATURE_SPAN:
         return None
     speed = _speed(recording)
@@ -48,7 +48,7 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     fall, slope, level = found.fall, found.slope, found.friction
     sure = abs(fall.value) > MIN_CHANGE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
-    why = ONE_WAY if sure and found.one_way else why
+    why = ONE_WAY_FALL if sure and found.one_way else why
     low, high = slope.interval(0.95)
     remarks: tuple[str, ...] = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
@@ -57,7 +57,7 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
     if found.one_way:
-        remarks = (*remarks, ONE_WAY)
+        remarks = (*remarks, ONE_WAY_FALL)
     estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
     curves = _curves(series, effort, found)
     means = curves[f"friction_of_{effort}"]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, typeset
 from strainwave.identification.experiments.motion_log import MIN_INERTIA
-from strainwave.identification.results.file_result import IN_CURRENT, FileEstimate, FileResult
+from strainwave.identification.results.file_result import IN_CURRENT, LOAD_INERTIA, MOTOR_INERTIA, FileEstimate, FileResult
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
 
@@ -19,11 +19,10 @@ Array = NDArray[np.float64]
 
 MAX_DISTANCE = 3.0  # standard deviations: two files that are further apart contradict each other
 MAX_DISTANCE_IN_MEAN = 2.0  # standard deviations: of files that are no further apart the mean is taken
-MOTOR, LOAD = "motor.inertia", "load.inertia"
-TOGETHER = (
+LOAD_WITH_MOTOR = (
     "the inertia of the motor is not known: load.inertia is that of the load, plus that of the motor times the ratio squared"
 )
-APART = (
+MOTOR_WITHOUT_LOAD = (
     "the inertia of the motor is not known: motor.inertia is what the torque of the motor shows, less the load, which the "
     "wind-up of the gear shows; "
 )
@@ -208,26 +207,28 @@ def without_motor(files: Sequence[FileResult], *, accept: bool = False) -> tuple
         files: results
         accept: whether files with a failed check determine it although others do
     """
-    motors = {each.estimate.law: each for each in combine(files, accept=accept) if each.estimate.path == MOTOR}
+    motors = {each.estimate.law: each for each in combine(files, accept=accept) if each.estimate.path == MOTOR_INERTIA}
     return tuple(_without_motor(file, motors) for file in files)
 
 
 def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) -> FileResult:
     drive, own = drive_of(file), {each.path: each for each in file.estimates}
-    if drive is None or LOAD not in own or (drive.motor.inertia > MIN_INERTIA and MOTOR not in own):
+    if drive is None or LOAD_INERTIA not in own or (drive.motor.inertia > MIN_INERTIA and MOTOR_INERTIA not in own):
         return file
-    load, motor = own[LOAD], motors.get(own[LOAD].law)
-    if MOTOR in own:
+    load, motor = own[LOAD_INERTIA], motors.get(own[LOAD_INERTIA].law)
+    if MOTOR_INERTIA in own:
         of_gear = drive.gear.input_inertia
-        remark = APART + (f"the gear's {of_gear:.3g} kg·m² are not in it" if of_gear else "the wave generator's is in it")
+        remark = MOTOR_WITHOUT_LOAD + (
+            f"the gear's {of_gear:.3g} kg·m² are not in it" if of_gear else "the wave generator's is in it"
+        )
     elif motor is not None:
         load = _less(load, motor.estimate, drive.gear.kinematics.ratio**2)
         remark = f"the inertia of the motor is that of {motor.taken_from}, and load.inertia is without it"
     elif load.law == IN_CURRENT:
         return file
     else:
-        remark = TOGETHER
-    estimates = tuple(load if each.path == LOAD else each for each in file.estimates)
+        remark = LOAD_WITH_MOTOR
+    estimates = tuple(load if each.path == LOAD_INERTIA else each for each in file.estimates)
     read = () if file.recognised is None else file.recognised.remarks
     place = 1 + max((file.remarks.index(each) for each in read if each in file.remarks), default=-1)  # behind how it was read
     return replace(file, estimates=estimates, remarks=(*file.remarks[:place], remark, *file.remarks[place:]))

@@ -21,8 +21,15 @@ from strainwave.identification.candidates.plain import from_motion_to_motion
 from strainwave.identification.candidates.torque_place import frictionless
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.combined_parameter import LOAD, MOTOR, CombinedParameter, distance, drive_of
-from strainwave.identification.results.file_result import BEHIND_GEAR, IN_CURRENT, FileEstimate, FileResult
+from strainwave.identification.results.combined_parameter import CombinedParameter, distance, drive_of
+from strainwave.identification.results.file_result import (
+    BEHIND_GEAR,
+    IN_CURRENT,
+    LOAD_INERTIA,
+    MOTOR_INERTIA,
+    FileEstimate,
+    FileResult,
+)
 from strainwave.identification.results.gear_so_far import is_of, source_of
 from strainwave.messages import listed, one_line
 from strainwave.parameters import gear_numbers, plain
@@ -152,11 +159,11 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     for path in own_paths("load", load):
         name = path.removeprefix("load.")
         estimate, before = own.get(path), getattr(whole.load, name, None)
-        if path == LOAD and "load_inertia" in given:
+        if path == LOAD_INERTIA and "load_inertia" in given:
             sources[path] = Entry(f"given with {log.name}")
         elif estimate is not None and (estimate.state != "not identified" or before is None):
             sources[path] = source_of(estimate, log.name)
-            load = load.replace(inertia=estimate.value) if path == LOAD and estimate.value > 0.0 else load
+            load = load.replace(inertia=estimate.value) if path == LOAD_INERTIA and estimate.value > 0.0 else load
         elif before is not None:
             load = load.replace(**{name: before})
             stated = whole.sources.get(path, Entry("not given"))
@@ -167,7 +174,7 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     least = MIN_LOAD_SHARE * float(rotor)
     if hasattr(load, "inertia") and load.inertia < least:  # with less, no step of a simulation would be short enough
         load = load.replace(inertia=least)
-        sources[LOAD] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
+        sources[LOAD_INERTIA] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
     return _with_part(whole, "load", load, sources)
 
 
@@ -186,7 +193,7 @@ def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[Comb
     gravity = {path.removeprefix("load."): each.estimate.value for path, each in shown.items()}
     load: Any = loads.Pendulum(inertia=inertia, **gravity) if gravity else loads.Inertia(inertia=inertia)
     why = f"given with {log.name}" if "load_inertia" in given else f"assumed: {log.name}, at constant speed, shows none"
-    sources = {LOAD: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
+    sources = {LOAD_INERTIA: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
     return _with_part(whole, "load", load, sources)
 
 
@@ -201,7 +208,7 @@ def _motor_of(log: FileResult) -> Any:
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log; the source of its constant states if the log counts the other way."""
     known = _with_motor_of(whole, log, parameters)
-    path = "motor.torque_constant" if "motor.torque_constant" in known.sources else MOTOR
+    path = "motor.torque_constant" if "motor.torque_constant" in known.sources else MOTOR_INERTIA
     entry, turned = known.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
     if not turned or OPPOSITE in entry.source:
         return known
@@ -225,7 +232,7 @@ def _with_motor_of(whole: GearSet, log: FileResult, parameters: Sequence[Combine
     sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
     if "motor.back_emf" in sources and "torque_constant" in given:
         sources["motor.back_emf"] = Entry(f"torque constant given with {log.name}")
-    sources[MOTOR] = source
+    sources[MOTOR_INERTIA] = source
     return _with_part(whole, "motor", known, {path: sources[path] for path in own_paths("motor", known)})
 
 
@@ -234,8 +241,8 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
     if log.recognised is not None and "motor_inertia" in log.recognised.constants:
         return log.recognised.constants["motor_inertia"], Entry(f"given with {log.name}")
     least = 0.0 if whole.gear.input_inertia > 0.0 else MIN_INERTIA
-    combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR]
-    for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR)):
+    combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR_INERTIA]
+    for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR_INERTIA)):
         if estimate.state != "not identified":
             return max(estimate.value, least), source_of(estimate, name)
     return least, Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 State = Literal["identified", "identified in combination", "not identified", "kept"]
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
+COULOMB_PATH, BREAKAWAY_PATH = "gear.friction_input.coulomb", "gear.friction_input.breakaway"
+LOAD_INERTIA, GRAVITY_PATH, MOTOR_INERTIA = "load.inertia", "load.gravity_torque", "motor.inertia"
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
 ASSUMED_BY_RECORDER = "it is the stiffness that the recorder assumed, and was not measured"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"

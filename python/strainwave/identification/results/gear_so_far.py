@@ -21,11 +21,11 @@ from strainwave.parameters import gear_numbers, plain
 from strainwave.questions import TORQUE_CONSTANT, QuestionError
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
-AMPLITUDE = "gear.kinematic_error.amplitude"
+ERROR_AMPLITUDE = "gear.kinematic_error.amplitude"
 EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as exact
 START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
-MODULATING = ("cyclic", "thermal")  # laws that vary another one
-KINEMATICS = "gear.kinematics."
+MODULATING_LAWS = ("cyclic", "thermal")  # laws that vary another one
+KINEMATICS_PATHS = "gear.kinematics."
 RATIO_TOLERANCE = 1e-9  # relative: two ratios that differ by less are one
 
 
@@ -136,7 +136,7 @@ class GearSoFar:
     def sliding(self) -> Any:
         """Return the friction of the input as it slides, without what modulates it over angle and temperature."""
         law: Any = self.gear_set.gear.friction_input
-        while law.name in MODULATING:
+        while law.name in MODULATING_LAWS:
             law = law.law
         return law
 
@@ -150,7 +150,7 @@ class GearSoFar:
         """
         outer: Any = self.gear_set.gear.friction_input
         depth, around = 0, list[Any]()
-        while outer.name in MODULATING:
+        while outer.name in MODULATING_LAWS:
             around.append(outer)
             outer, depth = outer.law, depth + 1
         for each in reversed(around):
@@ -179,9 +179,9 @@ def is_of(path: str, parts: Collection[str]) -> bool:
 
 def compared_path(path: str, gear: Any) -> str:
     """Return the path by which estimates of a number of a gear by several files are compared: an amplitude by its order."""
-    if path.startswith(f"{AMPLITUDE}["):
+    if path.startswith(f"{ERROR_AMPLITUDE}["):
         error: Any = gear.kinematic_error
-        return f"{AMPLITUDE} of order {error.order[int(path.partition('[')[2][:-1])]:g}"
+        return f"{ERROR_AMPLITUDE} of order {error.order[int(path.partition('[')[2][:-1])]:g}"
     return plain(path)
 
 
@@ -288,8 +288,8 @@ def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSe
     """Return the set with another ratio, whose source is that of a set, or as given."""
     if gear_set.gear.kinematics == other:
         return gear_set
-    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(KINEMATICS)}
-    names = [f"{KINEMATICS}{field['name']}" for field in other.fields if field["kind"] != "choice"]
+    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(KINEMATICS_PATHS)}
+    names = [f"{KINEMATICS_PATHS}{field['name']}" for field in other.fields if field["kind"] != "choice"]
     sources |= {name: Entry(of) if isinstance(of, str) else of.sources[name] for name in names}
     return replace(gear_set, gear=gear_set.gear.replace(kinematics=other), sources=sources)
 

@@ -29,10 +29,10 @@ MAX_SIGMA_OF_PHASE = 0.5  # rad
 MAX_RELATIVE_SHIFT = 0.25  # relative shift by the uncertainty of a kept parameter; beyond it the estimate is not identified
 MAX_SHIFT_BY_WRONG = 0.05  # relative shift by a kept parameter that the measurement contradicts
 MIN_SHIFT_LISTED = 0.02  # relative shift; smaller ones are not listed
-MAX_LISTED = 3  # kept parameters named with an estimate
+MAX_KEPT_LISTED = 3  # kept parameters named with an estimate
 MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are uncertain are identified in combination
 BY_SET = "determined together with numbers that are not identified, between which the set before the file divides"
-DIVIDED = friction.Coulomb | friction.Stribeck | friction.LuGre  # laws with Coulomb and viscous friction
+DIVIDED_LAWS = friction.Coulomb | friction.Stribeck | friction.LuGre  # laws with Coulomb and viscous friction
 MIN_RELATIVE_SIGMA = 1e-3  # of a torque: friction is repeated no better
 MAX_SHIFT_SIGMA = 1.0  # standard deviations: an estimate that its prior moves farther is determined in combination only
 
@@ -76,7 +76,7 @@ class JudgedFit:
             relative = {kept: shift / size for kept, shift in shifts.items() if size > 0.0 and shift > MIN_SHIFT_LISTED * size}
             yield FileEstimate(
                 path, estimate.unit, estimate.value, sigma, _law(path, self.fit.gear), why,
-                in_combination=in_combination, shift_by_kept=dict(list(relative.items())[:MAX_LISTED]),
+                in_combination=in_combination, shift_by_kept=dict(list(relative.items())[:MAX_KEPT_LISTED]),
             )  # fmt: skip
 
     def _why(self, place: int, path: str, sources: Mapping[str, Entry], shifts: Mapping[str, float]) -> tuple[str, bool]:
@@ -130,7 +130,7 @@ def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
     """Return the kept parameters whose uncertainty shifts an estimate far; empty if none does."""
     size = _size(estimate)
     far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_RELATIVE_SHIFT * size]
-    return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_LISTED])}" if far else ""
+    return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_KEPT_LISTED])}" if far else ""
 
 
 def combination(fit: Fit, place: int) -> str:
@@ -306,7 +306,7 @@ def with_friction_at(known: GearSoFar, speed: Array, estimates: Sequence[FileEst
     sizes = np.round(np.log(np.abs(speed)), 1)
     both_ways = np.array([len(np.unique(np.sign(speed[sizes == size]))) == 2 for size in np.unique(sizes)])
     usable = np.isfinite(spread) & (sum_of > 0.0) & both_ways
-    if "friction_input" in known.determined or not isinstance(law, DIVIDED) or law.coulomb <= 0.0:
+    if "friction_input" in known.determined or not isinstance(law, DIVIDED_LAWS) or law.coulomb <= 0.0:
         return known
     if not usable.any():
         return known

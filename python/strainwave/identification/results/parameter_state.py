@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 UNDETERMINED = "no file determines it"
-UNCOMPARED = re.compile(r"\[|phase")  # elements of a sequence fitted anew, and phases, whose size means nothing
+NOT_COMPARED = re.compile(r"\[|phase")  # elements of a sequence fitted anew, and phases, whose size means nothing
 ROW_HEIGHT, MARGIN_HEIGHT = 0.26, 1.35  # inches
 MAX_LINEAR_VALUE_RATIO = 5.0  # of the largest over the smallest ratio; beyond it the axis is logarithmic
 MIN_SHARE_OF_AXIS = 0.1  # of an interval that reaches zero or less, where a logarithmic axis ends
@@ -99,7 +99,7 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
     """
     rows = [
         each for each in states
-        if each.state == "identified" and np.isfinite(each.start) and each.start != 0.0 and not UNCOMPARED.search(each.path)
+        if each.state == "identified" and np.isfinite(each.start) and each.start != 0.0 and not NOT_COMPARED.search(each.path)
     ]  # fmt: skip
     if not rows:
         raise ValueError(f"no identified number has a value in {start.name}: there is nothing to compare")

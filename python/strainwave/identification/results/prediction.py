@@ -30,19 +30,19 @@ Array = NDArray[np.float64]
 
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
-MAX_SHARE_LEFT = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
+MAX_SHARE_LEFT_BY_CHANGES = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
 
 Verdict = Literal["agrees", "differs", "contradicts", "refused"]
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
 MIN_CHANGE_TEXT = f"{100.0 * MIN_CHANGE:g} %"
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
 STEP_SIGMA = 0.1  # standard deviations of a number, between two predictions
-RECORD_BLOCKS = 20  # contiguous ones of a recording, over which residuals scatter
-MIN_SAMPLES = 50  # of sliding, from which changes are determined
+SCATTER_BLOCKS = 20  # contiguous ones of a recording, over which residuals scatter
+MIN_SLIDING_SAMPLES = 50  # of sliding, from which changes are determined
 DRY, VISCOUS, FRICTION, ZERO, DELAY = "dry friction", "viscous friction", "friction", "zero", "delay"
 INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
-ANGLE = "zero of the angle"
-PLACES = ("friction_input", "friction_mesh", "friction_output")
+ZERO_OF_ANGLE = "zero of the angle"
+FRICTION_PARTS = ("friction_input", "friction_mesh", "friction_output")
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,7 @@ class Prediction(ComparedByFields, Pictured):
     @property
     def explained(self) -> bool:
         """True if the changes are the cause: with them the error is allowed, or at most half of `error` and of `varies`."""
-        return self.error_with_changes <= max(self.allowed, MAX_SHARE_LEFT * min(self.error, self.varies))
+        return self.error_with_changes <= max(self.allowed, MAX_SHARE_LEFT_BY_CHANGES * min(self.error, self.varies))
 
     @property
     def changed(self) -> tuple[PartChange, ...]:
@@ -315,7 +315,7 @@ def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direc
         at: returns the prediction of a gear, shape (n,)
     """
     whole = at(gear)
-    total = whole - at(gear.replace(**dict.fromkeys(PLACES, FRICTIONLESS)))
+    total = whole - at(gear.replace(**dict.fromkeys(FRICTION_PARTS, FRICTIONLESS)))
     numbers = _viscous_numbers(gear)
     halved = at(gear.replace({path: 0.5 * value for path, value in numbers.items()})) if numbers else whole
     viscous = 2.0 * (whole - halved)
@@ -326,7 +326,7 @@ def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direc
 def _viscous_numbers(gear: Any) -> dict[str, float]:
     """Return the numbers of a gear that its viscous friction grows with, by path."""
     names = ("viscous", "viscous_torque")
-    found = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in PLACES}
+    found = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in FRICTION_PARTS}
     return {path: value for path, value in found.items() if path.rpartition(".")[2] in names and value != 0.0}
 
 
@@ -378,7 +378,7 @@ def _without(asked: Sequence[Direction], worst: int) -> list[Direction]:
 
 def _blocks(values: Array) -> Array:
     """Return the sums over contiguous blocks, shape (k, n) becomes (blocks, k)."""
-    blocks = min(RECORD_BLOCKS, max(values.shape[1] // 2, 1))
+    blocks = min(SCATTER_BLOCKS, max(values.shape[1] // 2, 1))
     return np.array([part.sum(axis=1) for part in np.array_split(values, blocks, axis=1)])
 
 

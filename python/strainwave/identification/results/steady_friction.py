@@ -19,9 +19,9 @@ from strainwave.statistics.scale import ONE_SIGMA, student
 Array = NDArray[np.float64]
 
 MIN_SPEEDS = 4  # different ones, that determine a law of friction and validate it
-PATH = "steady_friction"
+STEADY_FRICTION = "steady_friction"
 AT_SPEEDS = "friction at each speed"  # the model of a measurement of fewer speeds
-PLACES = ("friction_input.", "friction_mesh.")  # whose numbers act on steady friction
+STEADY_FRICTION_PARTS = ("friction_input.", "friction_mesh.")  # whose numbers act on steady friction
 
 
 def friction_at(speed: float, value: float, sigma: float, *, side: str = "input") -> FileEstimate:
@@ -31,7 +31,7 @@ def friction_at(speed: float, value: float, sigma: float, *, side: str = "input"
     steady_friction (at 0.412 rad/s of the output)
     """
     why = TOO_UNCERTAIN if is_uncertain(value, sigma) else ""
-    return FileEstimate(PATH, "N.m", value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
+    return FileEstimate(STEADY_FRICTION, "N.m", value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
 
 
 def different_speeds(speed: Array) -> int:
@@ -113,7 +113,7 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
     """
     plain = [path.removeprefix("gear.") for path in paths]
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(gear))}
-    used = [place for place, path in enumerate(plain) if path.startswith(PLACES) and path in numbers]
+    used = [place for place, path in enumerate(plain) if path.startswith(STEADY_FRICTION_PARTS) and path in numbers]
     table = FrictionTable(np.array([abs(speed)]), np.zeros(1), load=np.array([load]))
     torque, slopes = table.predict(gear, [numbers[plain[place]] for place in used], np.zeros(0))
     gradient = slopes[:, 0, 0]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.checks.comparisons import (
-    MAX_CHANCE,
+    MAX_CHANCE_OF_START_SET,
     between_files,
     gravity_in_ratings,
     other_loads,
@@ -81,7 +81,7 @@ def test_the_share_that_fails_by_chance_is_the_one_stated() -> None:
     factors = np.exp(0.3 * random.standard_normal(count))
     (one,) = against(SMALL, of("loop.csv", {FIRST: known}, 1e-6))
     failed = float(np.mean((np.log(factors) / 0.3) ** 2 > one.limit))
-    assert failed == pytest.approx(MAX_CHANCE, abs=4.0 * np.sqrt(MAX_CHANCE / count))
+    assert failed == pytest.approx(MAX_CHANCE_OF_START_SET, abs=4.0 * np.sqrt(MAX_CHANCE_OF_START_SET / count))
 
 
 def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation_and_by_no_factor_of_two() -> None:
