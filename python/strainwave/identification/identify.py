@@ -40,7 +40,7 @@ from strainwave.identification.results.gear_so_far import (
     with_ratio,
     with_ratio_of_all,
 )
-from strainwave.identification.results.parameter_state import ParameterState, states_of
+from strainwave.identification.results.parameter_state import ParameterState, over_start_figure, states_of
 from strainwave.messages import listed, one_line, shortened
 from strainwave.presentation import Pictured, Reported, Row, counted
 from strainwave.progress import Progress, in_turn
@@ -122,8 +122,6 @@ class Identified(ComparedByFields, Pictured, Reported):
         Raises:
             ValueError: no identified number has a value in the start set
         """
-        from strainwave.identification.results.parameter_state import over_start_figure
-
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
 
     def _headline(self) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from operator import attrgetter
 from typing import NamedTuple
@@ -44,31 +43,6 @@ REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
 
 
-@dataclass(frozen=True)
-class _ComparedWithStart:
-    """A parameter and its value in the start set.
-
-    Attributes:
-        estimate: by the files
-        source: file that determines it best
-        before: value in the start set
-        spread: its relative standard deviation there [1]
-        off: logarithm of the estimate over the value before
-        sigma: standard deviation of that logarithm
-    """
-
-    estimate: FileEstimate
-    source: str
-    before: float
-    spread: float
-    off: float
-    sigma: float
-
-    def __str__(self) -> str:
-        value = f"{self.estimate.path} = {self.estimate.value:.4g} ± {self.estimate.sigma:.2g} {self.estimate.unit}"
-        return f"{value} against {self.before:.4g} ± {100.0 * self.spread:.2g} % ({self.off / self.sigma:+.1f} σ)"
-
-
 def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
     """Yield the check that friction and stiffness are those of the start set, by the logarithms of all numbers together.
 
@@ -77,16 +51,17 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     """
     from scipy.special import chdtri
 
-    compared = list(_compared(start, [each for each in parameters if each.source not in failed]))
+    compared = list(_off_start(start, [each for each in parameters if each.source not in failed]))
     if not compared:
         return
-    squares = sum((each.off / each.sigma) ** 2 for each in compared)
+    squares = sum(sigmas**2 for _, sigmas, _ in compared)
     limit = float(chdtri(len(compared), MAX_CHANCE_OF_START_SET))
-    apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
+    apart = sorted(compared, key=lambda each: -abs(each[1]))
+    words = [words for *_, words in apart[:MAX_PARAMETERS_LISTED]]
     more = f", and {len(apart) - MAX_PARAMETERS_LISTED} more" if len(apart) > MAX_PARAMETERS_LISTED else ""
     yield Check(
-        "numbers of the start set", listed(dict.fromkeys(each.source for each in apart)), squares, limit, "1", squares > limit,
-        f"the files contradict the set {start.name}: {'; '.join(map(str, apart[:MAX_PARAMETERS_LISTED]))}{more}",
+        "numbers of the start set", listed(dict.fromkeys(source for source, *_ in apart)), squares, limit, "1", squares > limit,
+        f"the files contradict the set {start.name}: {'; '.join(words)}{more}",
         "start from the set of this gear (size and ratio), or see whether units, sides, ratio and torque constant are right",
     )  # fmt: skip
 
@@ -110,14 +85,14 @@ def gravity_in_ratings(
             )  # fmt: skip
 
 
-def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_ComparedWithStart]:
+def _off_start(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[tuple[str, float, str]]:
+    """Yield the best file of each compared parameter, its distance from the start set in standard deviations, and words."""
     compared = set[str]()
     for each in parameters:
         estimate = each.estimate
-        found = _in_set(start, estimate)
-        if found is None or found[0] in compared:
+        path, before = _in_set(start, estimate)
+        if path in compared:
             continue
-        path, before = found
         entry = start.sources.get(path)
         if entry is None or entry.assumed or before <= 0.0 or estimate.value <= 0.0:
             continue
@@ -125,11 +100,13 @@ def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterat
         spread = uncertainty(before, entry) / before
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
-        yield _ComparedWithStart(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
+        off = float(np.log(estimate.value / before)) / sigma
+        value = f"{estimate.path} = {estimate.value:.4g} ± {estimate.sigma:.2g} {estimate.unit}"
+        yield each.source, off, f"{value} against {before:.4g} ± {100.0 * spread:.2g} % ({off:+.1f} σ)"
 
 
-def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
-    """Return the number of the start set that an estimate is compared with; None if it has none of the same meaning.
+def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float]:
+    """Return the number of the start set that an estimate is compared with; no path if it has none of the same meaning.
 
     Of springs the stiffness at zero twist is compared, and that of further segments with a spring of the same law. Where their
     knees lie depends on how far they were twisted.
@@ -137,14 +114,14 @@ def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
     path, spring = estimate.path, start.gear.stiffness
     if path in FIRST_STIFFNESS and estimate.label == path:
         first, stiffness = spring.fields[0]["name"], float(spring.tangent(0.0))
-        return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else None
+        return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else ("", 0.0)
     further = estimate.law == spring.name and estimate.unit == "N.m/rad" and path.startswith("gear.stiffness.")
     if not (further or path.startswith("gear.friction_input.")) or "[" in path or estimate.label != path:
-        return None
+        return "", 0.0
     try:
         return path, float(attrgetter(path)(start))
     except AttributeError:
-        return None
+        return "", 0.0
 
 
 def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileResult]) -> Iterator[Check]:
@@ -183,7 +160,7 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
     """
     logs = [each for each in files if not each.failed and not each.same_as and not each.refused]
     for one, other in combinations(logs, 2):
-        pairs = [_log_ratio(mine, its) for mine, its in _same_numbers(one, other)]
+        pairs = list(_log_ratios(one, other))
         if not any(path in LOAD_PATHS for path, *_ in pairs) or all(path in LOAD_PATHS for path, *_ in pairs):
             continue
         off, sigma = (np.array([each[place] for each in pairs]) for place in (1, 2))
@@ -200,20 +177,15 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
             )  # fmt: skip
 
 
-def _same_numbers(one: FileResult, other: FileResult) -> Iterator[tuple[FileEstimate, FileEstimate]]:
-    """Yield the torques that two logs both determine: load, and Coulomb friction of one law."""
+def _log_ratios(one: FileResult, other: FileResult) -> Iterator[tuple[str, float, float]]:
+    """Yield the logarithm of one value over the other, with its standard deviation, of load and Coulomb friction of one law."""
     compared = (*LOAD_PATHS, *([COULOMB_PATH] if one.friction == other.friction else []))
     there = {(each.path, each.law): each for each in other.estimates if not each.why}
     for each in one.estimates:
         its = there.get((each.path, each.law))
         if each.path in compared and not each.why and its is not None and min(each.value, its.value) > 0.0:
-            yield each, its
-
-
-def _log_ratio(one: FileEstimate, other: FileEstimate) -> tuple[str, float, float]:
-    """Return the path of a number, the logarithm of one value over the other, and its standard deviation."""
-    sigma = float(np.hypot(one.own / one.value, other.own / other.value))
-    return one.path, float(np.log(one.value / other.value)), max(sigma, 1e-300)
+            sigma = float(np.hypot(each.own / each.value, its.own / its.value))
+            yield each.path, float(np.log(each.value / its.value)), max(sigma, 1e-300)
 
 
 def other_loads(files: Sequence[FileResult]) -> dict[str, str]:

@@ -141,21 +141,16 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
     remedy = f"{mistake}see whether the units of both columns are right"
     if side == "output":
         remedy = f"if it was measured at the input, give --side input; {mistake}see whether units are right"
-    elif factor > MAX_FACTOR and _off_at_output(table, law, known, ratio) < min(
-        np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))
-    ):
-        at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
-        remedy = (
-            f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured there, "
-            "give --side output; if at the input, --side input"
-        )
+    elif factor > MAX_FACTOR:
+        ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])  # were it measured at the output
+        off = np.abs(np.log(np.maximum(law.steady(ends) / ratio / known.steady(ends * ratio), 1e-300))).max()
+        if off < min(np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))):
+            at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
+            remedy = (
+                f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured "
+                "there, give --side output; if at the input, --side input"
+            )
     yield Check(**vars(check) | {"remedy": remedy})
-
-
-def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> float:
-    """Return the logarithm between a table and the start set at both ends of its speeds, were it measured at the output."""
-    ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])
-    return float(np.abs(np.log(np.maximum(law.steady(ends) / ratio / known.steady(ends * ratio), 1e-300))).max())
 
 
 def friction_of_log(

@@ -24,6 +24,7 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, drive_of
 from strainwave.identification.results.file_result import (
     BEHIND_GEAR,
+    COULOMB_PATH,
     IN_CURRENT,
     LOAD_INERTIA,
     MOTOR_INERTIA,
@@ -64,7 +65,9 @@ def drive_set(
     )  # fmt: skip
     if best is not None:
         whole = _with_bristles(_with_motor(_with_load(whole, best), best, parameters), files)
-    elif whole.load is None and (steady := [each for each in files if _is_at_constant_speed(each)]):
+    elif whole.load is None and (
+        steady := [each for each in files if each.part_of and each.recognised is not None and each.recognised.kind == "log"]
+    ):  # logs that are points of a table of friction
         whole = _with_motor(_with_steady_load(whole, steady[0], parameters), steady[0], parameters)
     unchanged = {path for path, entry in start.sources.items() if whole.sources.get(path) == entry}
     before = None if start.covariance is None else start.covariance.among(unchanged)
@@ -178,11 +181,6 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     return _with_part(whole, "load", load, sources)
 
 
-def _is_at_constant_speed(result: FileResult) -> bool:
-    """True for a log that is a point of a table of friction."""
-    return bool(result.part_of) and result.recognised is not None and result.recognised.kind == "log"
-
-
 def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the load of logs at constant speed: their gravity, and an inertia that changes nothing there."""
     assert log.recognised is not None
@@ -195,14 +193,6 @@ def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[Comb
     why = f"given with {log.name}" if "load_inertia" in given else f"assumed: {log.name}, at constant speed, shows none"
     sources = {LOAD_INERTIA: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
     return _with_part(whole, "load", load, sources)
-
-
-def _motor_of(log: FileResult) -> Any:
-    """Return the motor of a log: that of its fit, else one with the torque constant that was given with it."""
-    if (drive := drive_of(log)) is not None:
-        return drive.motor
-    given = {} if log.recognised is None else log.recognised.constants
-    return motor.CurrentSource(torque_constant=given["torque_constant"]) if "torque_constant" in given else motor.TorqueSource()
 
 
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
@@ -218,7 +208,7 @@ def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedPa
 
 def _with_motor_of(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
-    given, fitted = ({} if log.recognised is None else log.recognised.constants), _motor_of(log)
+    given = {} if log.recognised is None else log.recognised.constants
     if whole.motor is not None:
         names = {field["name"] for field in whole.motor.fields}
         numbers = {"torque_constant": "torque_constant", "resistance": "resistance", "inertia": "motor_inertia"}
@@ -227,7 +217,11 @@ def _with_motor_of(whole: GearSet, log: FileResult, parameters: Sequence[Combine
         sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in changed}
         return _with_part(whole, "motor", whole.motor.replace(**changed), sources)
     inertia, source = _motor_inertia(whole, log, parameters)
-    known = (fitted if "torque_constant" in given else motor.TorqueSource()).replace(inertia=inertia)
+    fitted: Any = motor.TorqueSource()
+    if "torque_constant" in given:
+        of_fit = drive_of(log)
+        fitted = motor.CurrentSource(torque_constant=given["torque_constant"]) if of_fit is None else of_fit.motor
+    known = fitted.replace(inertia=inertia)
     sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", known)}
     sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
     if "motor.back_emf" in sources and "torque_constant" in given:
@@ -250,12 +244,9 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
 
 def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     """Return the set with bristles that bend at reversals, if its friction is that of a log which shows how they bend."""
-    source = next(
-        (entry for path, entry in whole.sources.items() if plain(path) == "gear.friction_input.coulomb"), Entry("not given")
-    ).source
-    log = next(
-        (each for each in files if each.bend > 0.0 and source.startswith("identified from") and each.name in source), None
-    )
+    source = next((entry.source for path, entry in whole.sources.items() if plain(path) == COULOMB_PATH), "")
+    is_of_log = source.startswith("identified from")
+    log = next((each for each in files if is_of_log and each.bend > 0.0 and each.name in source), None)
     if log is None:
         return whole
     before: Any = whole.gear.friction_input
@@ -301,7 +292,10 @@ def _covariance(
     kept = {} if before is None else {path: place for place, path in enumerate(before.paths) if path not in paths}
     if not paths and not kept:
         return None
-    own, common = np.array([each.own for each in estimates]), np.array([_signed_common(each) for each in estimates])
+    own = np.array([each.own for each in estimates])
+    common = np.array(  # with the sign of a torque: all torques grow with the constant
+        [np.copysign(each.common, each.value) if each.is_of_torque else each.common for each in estimates]
+    )
     n, every = len(paths), min(len(paths) + len(kept), MAX_NUMBERS)
     matrix = np.zeros((every, every))
     if n:
@@ -321,11 +315,6 @@ def _identified(whole: GearSet, parameters: Sequence[CombinedParameter]) -> Iter
         of_file = [each for each in own if each.source in entry.source]
         if own:
             yield path, (of_file or own)[0]
-
-
-def _signed_common(estimate: FileEstimate) -> float:
-    """Return the part of a standard deviation that files share, with the sign of the number: all grow with the constant."""
-    return float(np.copysign(estimate.common, estimate.value)) if estimate.is_of_torque else estimate.common
 
 
 def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], files: Sequence[FileResult]) -> Array:

@@ -12,7 +12,7 @@ from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.pictures import Picture
+from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
 from strainwave.typeset import percent, quantity
@@ -300,8 +300,6 @@ class FileResult(ComparedByFields, Pictured):
         Raises:
             ValueError: the file was refused, or is a point of a table of several files
         """
-        from strainwave.identification.results.pictures import pictures_figure
-
         if not self.pictures:
             raise ValueError(f"{self.name} has nothing to draw: {self.refused or f'a part of the {self.part_of}'}")
         return pictures_figure(self.pictures, f"Measured and modelled: {self.name}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -166,7 +166,7 @@ def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
     Returns:
         the upper axes, which have the labels of a legend
     """
-    if picture.look not in _RESIDUAL:
+    if picture.look == "turn":
         return draw_measured(figure, picture)
     shared = picture.look != "loop"
     whole: Axes
@@ -174,7 +174,7 @@ def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
     _MEASURED[picture.look](whole, picture)
     if shared:
         whole.set_xlabel("")
-    _RESIDUAL[picture.look](left, picture.curves)
+    _draw_residual(left, picture)
     if "held_out" in picture.curves:
         x = picture.curves[picture.curves.names[0]] if shared else np.arange(1.0, len(picture.curves) + 1.0)
         for axes in (whole, left) if shared else (left,):
@@ -202,8 +202,7 @@ def pictures_figure(pictures: Sequence[Picture], title: str) -> Figure:
 
 def residual_of(curves: Recording) -> Array:
     """Return what is left of a file: measured less modelled, or what neither orders nor loads explain."""
-    left: Array = curves["residual"] if "residual" in curves else curves[curves.names[1]] - curves["modelled"]
-    return left
+    return np.asarray(curves["residual"] if "residual" in curves else curves[curves.names[1]] - curves["modelled"])
 
 
 def picture_label(picture: Picture) -> str:
@@ -216,14 +215,6 @@ def _table(axes: Axes, picture: Picture) -> None:
     torque = picture.curves.names[1]
     table_points(axes, picture.curves)
     marks.label_axes(axes, picture_label(picture), picture.curves.unit(torque), "input speed", "rad/s")
-
-
-def _table_residual(axes: Axes, curves: Recording) -> None:
-    order = np.argsort(curves["speed"], kind="stable")
-    speed, residual = curves["speed"][order], residual_of(curves)[order]
-    marks.residual_curve(axes, speed, residual, LIGHT["ink"])
-    _bands(axes, speed, residual, _sigma(curves, order))
-    marks.label_axes(axes, "measured − modelled", curves.unit(curves.names[1]), "input speed", "rad/s")
 
 
 def table_points(axes: Axes, curves: Recording) -> None:
@@ -253,14 +244,6 @@ def _loop(axes: Axes, picture: Picture) -> None:
     marks.label_axes(axes, f"{ANGLE_NAMES.get(angle, angle.replace('_', ' '))}{side}", "rad", torque, "N.m")
 
 
-def _loop_residual(axes: Axes, curves: Recording) -> None:
-    """Draw what is left in the order measured."""
-    point, residual = np.arange(1.0, len(curves) + 1.0), residual_of(curves)
-    marks.residual_curve(axes, point, residual, LIGHT["ink"])
-    _bands(axes, point, residual, _sigma(curves))
-    marks.label_axes(axes, "measured − modelled", curves.unit(curves.names[1]), "point compared, in the order measured", "1")
-
-
 def _means(axes: Axes, picture: Picture) -> None:
     """Draw means of the friction over the temperature, and the line through all samples."""
     over, channel = picture.curves.names[:2]
@@ -268,13 +251,6 @@ def _means(axes: Axes, picture: Picture) -> None:
     axes.plot(celsius, picture.curves[channel], "o", color=LIGHT["measured"], label="means of classes")
     axes.plot(celsius, picture.curves["modelled"], color=LIGHT["model"], label="line through all samples")
     marks.label_axes(axes, picture_label(picture), picture.curves.unit(channel), "temperature", "degC")
-
-
-def _means_residual(axes: Axes, curves: Recording) -> None:
-    celsius, residual = curves.values(curves.names[0], "degC"), residual_of(curves)
-    marks.residual_curve(axes, celsius, residual, LIGHT["ink"])
-    _bands(axes, celsius, residual, None)
-    marks.label_axes(axes, "means − line", curves.unit(curves.names[1]), "temperature", "degC")
 
 
 def _series(axes: Axes, picture: Picture) -> None:
@@ -286,15 +262,6 @@ def _series(axes: Axes, picture: Picture) -> None:
     label = "orders found" if "residual" in curves else "model"
     marks.curve(axes, x, modelled, color=LIGHT["model"], linewidth=0.9, label=label)
     marks.label_axes(axes, picture_label(picture), curves.unit(channel), over.replace("_", " "), curves.unit(over))
-
-
-def _series_residual(axes: Axes, curves: Recording) -> None:
-    over, residual = curves.names[0], residual_of(curves)
-    place, broken = _broken(curves[over], residual)
-    marks.residual_curve(axes, place, broken, LIGHT["ink"])
-    _bands(axes, curves[over], residual, _sigma(curves))
-    below = "left by orders and loads" if "residual" in curves else "measured − modelled"
-    marks.label_axes(axes, below, curves.unit(curves.names[1]), over.replace("_", " "), curves.unit(over))
 
 
 def _turn(figure: Figure | SubFigure, picture: Picture) -> Axes:
@@ -320,9 +287,30 @@ def _turn(figure: Figure | SubFigure, picture: Picture) -> Axes:
 _MEASURED: dict[Look, Callable[[Axes, Picture], None]] = {
     "table": _table, "loop": _loop, "means": _means, "series": _series,
 }  # fmt: skip
-_RESIDUAL: dict[Look, Callable[[Axes, Recording], None]] = {
-    "table": _table_residual, "loop": _loop_residual, "means": _means_residual, "series": _series_residual,
-}  # fmt: skip
+
+
+def _draw_residual(axes: Axes, picture: Picture) -> None:
+    """Draw what is left, with its bands, over the abscissa of a picture; of a loop in the order measured."""
+    curves, look = picture.curves, picture.look
+    over, channel = curves.names[:2]
+    x, residual, sigma = curves[over], residual_of(curves), None
+    if "sigma" in curves:
+        sigma = curves["sigma"]
+    label, x_label, x_unit = "measured − modelled", over.replace("_", " "), curves.unit(over)
+    if look == "table":
+        order = np.argsort(x, kind="stable")
+        x, residual, sigma = x[order], residual[order], None if sigma is None else sigma[order]
+        x_label, x_unit = "input speed", "rad/s"
+    elif look == "loop":
+        x, x_label, x_unit = np.arange(1.0, len(curves) + 1.0), "point compared, in the order measured", "1"
+    elif look == "means":
+        x, sigma, label = curves.values(over, "degC"), None, "means − line"
+        x_label, x_unit = "temperature", "degC"
+    elif "residual" in curves:
+        label = "left by orders and loads"
+    marks.residual_curve(axes, *(_broken(x, residual) if look == "series" else (x, residual)), LIGHT["ink"])
+    _bands(axes, x, residual, sigma)
+    marks.label_axes(axes, label, curves.unit(channel), x_label, x_unit)
 
 
 def _broken(x: Array, *series: Array) -> tuple[Array, ...]:
@@ -337,27 +325,17 @@ def _broken(x: Array, *series: Array) -> tuple[Array, ...]:
     return np.insert(x, gaps, x[gaps]), *(np.insert(each, gaps, np.nan) for each in series)
 
 
-def _sigma(curves: Recording, order: NDArray[np.intp] | None = None) -> Array | None:
-    if "sigma" not in curves:
-        return None
-    return curves["sigma"] if order is None else curves["sigma"][order]
-
-
 def _bands(axes: Axes, x: Array, residual: Array, sigma: Array | None) -> None:
     """Draw the limits of 95 % of the residuals, if they are normal, and the interval of the model."""
     level = SIGMA_OF_95_PERCENT * float(np.sqrt(np.mean(residual**2)))
     for side in (-level, level):
         axes.axhline(side, color=LIGHT["earlier"], linestyle="--", linewidth=0.9)
     if sigma is not None:
-        where, half = zip(*_blocks(x, SIGMA_OF_95_PERCENT * sigma), strict=True)
-        band = np.array(half)
-        axes.fill_between(where, -band, band, facecolor=LIGHT["model"], alpha=0.35, linewidth=0.0)
-
-
-def _blocks(x: Array, half: Array) -> Iterator[tuple[float, float]]:
-    """Yield the points of a band: of a long record the largest of each of many stretches."""
-    for rows in np.array_split(np.arange(len(x)), min(len(x), MAX_BAND_BLOCKS)):
-        yield float(np.mean(x[rows])), float(np.max(half[rows]))
+        blocks = np.array_split(np.arange(len(x)), min(len(x), MAX_BAND_BLOCKS))
+        band = np.array([float(np.max(SIGMA_OF_95_PERCENT * sigma[rows])) for rows in blocks])
+        axes.fill_between(
+            [float(np.mean(x[rows])) for rows in blocks], -band, band, facecolor=LIGHT["model"], alpha=0.35, linewidth=0.0
+        )
 
 
 # ---- Spectra of the residual -----------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.results.file_result import MAX_UNEXPLAINED, Check
-from strainwave.identification.results.pictures import Picture
+from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.orders.lines import SpectrumLine
 from strainwave.parameters import every
 from strainwave.presentation import Pictured, Presented, Row
@@ -118,8 +118,6 @@ class Prediction(ComparedByFields, Pictured):
         Raises:
             ValueError: the recording cannot be predicted
         """
-        from strainwave.identification.results.pictures import pictures_figure
-
         if (picture := self.picture) is None:
             raise ValueError(f"{self.name} cannot be drawn: {self.refused}")
         return pictures_figure([picture], f"{self.name}, predicted by {self.gear}")
