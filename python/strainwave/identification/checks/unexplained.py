@@ -17,7 +17,7 @@ from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import Check, FileEstimate, error_in_words
-from strainwave.kinematics import StrainWave
+from strainwave.identification.results.gear_so_far import geared
 from strainwave.messages import as_option
 from strainwave.statistics.residuals import shape
 from strainwave.statistics.scale import noise_sigma
@@ -166,72 +166,34 @@ def causes(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> li
 
 
 def _likely(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> Iterator[Cause]:
-    for name in recording.names:
-        if name != "time":
-            yield Cause(
-                f'the sign of "{name}" is reversed', f'multiply the column "{name}" by -1',
-                _scaled(recording, name, -1.0), drive,
-            )  # fmt: skip
-    yield from _units(recording, drive)
-    yield from _sides(recording, drive, columns)
-    yield from _ratio(recording, drive)
-
-
-def _units(recording: Recording, drive: Drive) -> Iterator[Cause]:
-    for name in recording.names:
-        unit = recording.unit(name)
+    units = {name: recording.unit(name) for name in recording.names}
+    for name in [name for name in units if name != "time"]:
+        turned = recording.with_column(name, -1.0 * recording[name], units[name])
+        yield Cause(f'the sign of "{name}" is reversed', f'multiply the column "{name}" by -1', turned, drive)
+    for name, unit in units.items():
         for other in MISTAKEN.get(unit, ()):
+            scaled = recording.with_column(name, convert(1.0, other, unit) * recording[name], unit)
+            remedy = f"state its unit: {as_option('unit', name, other)}"
+            yield Cause(f'"{name}" is in {other}, not in {unit}', remedy, scaled, drive)
+    for moves in ("angle", "speed"):
+        names = {f"input_{moves}": f"output_{moves}", f"output_{moves}": f"input_{moves}"}
+        if present := [name for name in names if name in recording]:
+            swapped = f"the columns of {moves} are swapped"
+            what = f'"{present[0]}" was measured at the other side' if len(present) == 1 else swapped
+            remedy = " ".join(as_option("column", names[name], columns.get(name, name)) for name in present)
+            columns_renamed = {names.get(name, name): recording[name] for name in units}
+            renamed = Recording(columns_renamed, {names.get(name, name): units[name] for name in units}, recording.title)
+            yield Cause(what, f"name the columns the other way: {remedy}", renamed, drive)
+    if set(ENCODERS) <= units.keys():
+        angles = [recording.values(name, "rad") for name in ENCODERS]
+        slope = abs(np.polyfit(angles[1], angles[0], 1)[0]) if np.ptp(angles[1]) > 0.0 else 0.0
+        ratio = abs(drive.gear.kinematics.ratio)
+        if slope >= 1.0 and abs(slope / ratio - 1.0) >= MIN_RATIO_ERROR:
             yield Cause(
-                f'"{name}" is in {other}, not in {unit}', f"state its unit: {as_option('unit', name, other)}",
-                _scaled(recording, name, convert(1.0, other, unit)), drive,
+                f"the ratio of the gear is about {slope:.3g}, not {ratio:g}",
+                f"start from a gear of ratio {round(slope)}, or give --constant ratio={round(slope)}",
+                recording, drive.replace(gear=geared(drive.gear, round(slope))),
             )  # fmt: skip
-
-
-def _sides(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> Iterator[Cause]:
-    for what_moves in ("angle", "speed"):
-        sides = (f"input_{what_moves}", f"output_{what_moves}")
-        present = [side for side in sides if side in recording]
-        if not present:
-            continue
-        names = {sides[0]: sides[1], sides[1]: sides[0]}
-        what = (
-            f'"{present[0]}" was measured at the other side'
-            if len(present) == 1
-            else f"the columns of {what_moves} are swapped"
-        )
-        remedy = " ".join(as_option("column", names[name], columns.get(name, name)) for name in present)
-        yield Cause(what, f"name the columns the other way: {remedy}", _renamed(recording, names), drive)
-
-
-def _ratio(recording: Recording, drive: Drive) -> Iterator[Cause]:
-    """Yield another ratio, if both encoders show one."""
-    if not set(ENCODERS) <= set(recording.names):
-        return
-    angles = [recording.values(name, "rad") for name in ENCODERS]
-    slope = np.polyfit(angles[1], angles[0], 1)[0] if np.ptp(angles[1]) > 0.0 else 0.0
-    known = abs(drive.gear.kinematics.ratio)
-    if abs(slope) < 1.0 or abs(abs(slope) / known - 1.0) < MIN_RATIO_ERROR:
-        return
-    teeth = 2 * round(abs(slope)) - (2 if drive.gear.kinematics.ratio > 0.0 else 0)
-    fixed = "circular_spline" if drive.gear.kinematics.ratio < 0.0 else "flexspline"
-    kinematics = StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
-    yield Cause(
-        f"the ratio of the gear is about {abs(slope):.3g}, not {known:g}",
-        f"start from a gear of ratio {round(abs(slope))}, or give --constant ratio={round(abs(slope))}",
-        recording, drive.replace(gear=drive.gear.replace(kinematics=kinematics)),
-    )  # fmt: skip
-
-
-def _scaled(recording: Recording, name: str, factor: float) -> Recording:
-    return recording.with_column(name, factor * recording[name], recording.unit(name))
-
-
-def _renamed(recording: Recording, names: dict[str, str]) -> Recording:
-    return Recording(
-        {names.get(name, name): recording[name] for name in recording.names},
-        {names.get(name, name): recording.unit(name) for name in recording.names},
-        recording.title,
-    )
 
 
 # ---- Shape of residuals ----------------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
+from strainwave.identification.results.gear_so_far import GearSoFar, relative_sigma, rotor_sigma, torque_constant_of
 from strainwave.messages import listed
 from strainwave.questions import Answer, QuestionError
 
@@ -108,13 +108,13 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         remarks.append(f"outliers or clipped samples of {log.effort} are left out: {spoilt_rows}, {share:.2g} % of all")
     given = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
-    constant = TorqueConstant.of(file, known.gear_set) if rests else None
+    constant = torque_constant_of(file, known.gear_set) if rests else None
+    relative = 0.0 if constant is None else constant[1]
     turning = place.drive.motor.inertia + place.drive.gear.input_inertia
     of_recorder = RECORDER_BIAS * turning if log.effort == "current" and not in_current else 0.0
     spread = 0.0 if in_current or place.drive is not drive else rotor_sigma(file, known.gear_set)
     drive = place.drive
     rotor = float(np.linalg.norm([spread, of_recorder, place.open_inertia])) * drive.gear.kinematics.ratio**2
-    relative = 0.0 if constant is None else constant.relative
     by_voltage = log.effort == "voltage" and "resistance" not in file.constants
     of_resistance = (
         relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0

@@ -198,27 +198,15 @@ def _first_sigma(part: str, estimates: Sequence[FileEstimate]) -> float:
     return own[0] if own else np.inf
 
 
-@dataclass(frozen=True)
-class TorqueConstant:
-    """The torque constant of the motor, which is common to all files with a current in place of a torque.
+def torque_constant_of(file: Recognised, gear_set: GearSet) -> tuple[float, float] | None:
+    """Return the torque constant [N.m/A] and its relative standard deviation [1]; None if it is not known.
 
-    Attributes:
-        value: [N.m/A]
-        relative: its standard deviation over its value [1]
+    It is exact if a person gave it with the file, else as the set has it, and then common to all files with a current.
     """
-
-    value: float
-    relative: float
-
-    @classmethod
-    def of(cls, file: Recognised, gear_set: GearSet) -> TorqueConstant | None:
-        """Return it as given with the file, which is exact; else as the set has it; None if neither does."""
-        if "torque_constant" in file.constants:
-            return cls(file.constants["torque_constant"], 0.0)
-        value = getattr(gear_set.motor, "torque_constant", None)
-        if not value:
-            return None
-        return cls(value, relative_sigma(gear_set, "motor.torque_constant", value))
+    if "torque_constant" in file.constants:
+        return file.constants["torque_constant"], 0.0
+    value = getattr(gear_set.motor, "torque_constant", None)
+    return (value, relative_sigma(gear_set, "motor.torque_constant", value)) if value else None
 
 
 def relative_sigma(gear_set: GearSet, path: str, value: float) -> float:
@@ -252,12 +240,12 @@ def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
     """
     if "torque" in file.recording:
         return file.recording, 0.0
-    constant = TorqueConstant.of(file, gear_set)
+    constant = torque_constant_of(file, gear_set)
     if constant is None:
         raise QuestionError("it has the current alone", [TORQUE_CONSTANT])
+    value, relative = constant
     counted = abs(gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
-    torque = counted * constant.value * file.recording["current"]
-    return file.recording.with_column("torque", torque, "N.m"), constant.relative
+    return file.recording.with_column("torque", counted * value * file.recording["current"], "N.m"), relative
 
 
 # ---- Ratio -----------------------------------------------------------------------------------------------------------
@@ -268,15 +256,15 @@ def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
     ratios = {file.constants.get("ratio") for file in files}
     if len(ratios) != 1 or (ratio := ratios.pop()) is None:
         return start
-    return _with_kinematics(start, _geared(start.gear, ratio).kinematics, "ratio given with the files")
+    return _with_kinematics(start, geared(start.gear, ratio).kinematics, "ratio given with the files")
 
 
 def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
     """Return the gear so far with the ratio that a person gave with this file."""
     if "ratio" not in file.constants:
         return known
-    geared = _geared(known.gear_set.gear, file.constants["ratio"])
-    return replace(known, gear_set=_with_kinematics(known.gear_set, geared.kinematics, "ratio given with the file"))
+    other = geared(known.gear_set.gear, file.constants["ratio"]).kinematics
+    return replace(known, gear_set=_with_kinematics(known.gear_set, other, "ratio given with the file"))
 
 
 def with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
@@ -294,19 +282,18 @@ def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSe
     return replace(gear_set, gear=gear_set.gear.replace(kinematics=other), sources=sources)
 
 
-def _geared(gear: Any, ratio: float) -> Any:
-    """Return the gear with another ratio; its output turns the same way as before."""
+def geared(gear: Any, ratio: float) -> Any:
+    """Return the gear with another ratio; its output turns the same way as before.
+
+    It is a strain wave gear if whole teeth give this ratio, else a plain ratio.
+    """
     if abs(abs(ratio) - abs(gear.kinematics.ratio)) < RATIO_TOLERANCE * abs(ratio):
         return gear
-    return gear.replace(kinematics=_kinematics(ratio, gear.kinematics.ratio < 0.0))
-
-
-def _kinematics(ratio: float, backwards: bool) -> Any:
-    """Return a strain wave gear of this ratio, if whole teeth give it; else a plain ratio."""
     size = abs(ratio)
     if abs(size - round(size)) > RATIO_TOLERANCE * size or round(size) < 2:
-        return kinematics.PlainRatio(reduction=size)
-    turns = 2 * round(size)  # two teeth fewer on the flexspline
-    if backwards or ratio < 0.0:
-        return kinematics.StrainWave(flexspline_teeth=turns, circular_spline_teeth=turns + 2, fixed="circular_spline")
-    return kinematics.StrainWave(flexspline_teeth=turns - 2, circular_spline_teeth=turns, fixed="flexspline")
+        return gear.replace(kinematics=kinematics.PlainRatio(reduction=size))
+    is_backwards = ratio < 0.0 or gear.kinematics.ratio < 0.0
+    teeth = 2 * round(size) - (0 if is_backwards else 2)  # two fewer on the flexspline
+    fixed = "circular_spline" if is_backwards else "flexspline"
+    strain_wave = kinematics.StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
+    return gear.replace(kinematics=strain_wave)

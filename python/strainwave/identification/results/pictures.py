@@ -308,7 +308,8 @@ def _draw_residual(axes: Axes, picture: Picture) -> None:
         x_label, x_unit = "temperature", "degC"
     elif "residual" in curves:
         label = "left by orders and loads"
-    marks.residual_curve(axes, *(_broken(x, residual) if look == "series" else (x, residual)), LIGHT["ink"])
+    place, left = _broken(x, residual) if look == "series" else (x, residual)
+    marks.residual_curve(axes, place, left, LIGHT["ink"])
     _bands(axes, x, residual, sigma)
     marks.label_axes(axes, label, curves.unit(channel), x_label, x_unit)
 
