@@ -135,7 +135,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
-        remarks += [*errors.remarks, *between.remarks]
+        of_model += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, file.path.name)
     best = judged
     if not in_current and taken.has_friction:

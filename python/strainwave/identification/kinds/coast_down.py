@@ -17,7 +17,7 @@ from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, rotor_sigma
 from strainwave.questions import Answer, QuestionError
 from strainwave.statistics.linear_fit import solved
 
@@ -75,7 +75,8 @@ class CoastDown(Kind):
         table = Recording({"speed": speed, "torque": -inertia * slowing}, {"speed": "rad/s", "torque": "N.m"})
         turns = f"{inertia:.4g} kg·m² turn{' at the output' if file.side == 'output' else ''}: friction scales with them"
         remarks = (*file.remarks, f"motor_inertia with the gear's own, and load_inertia, {turns}")
-        return fit_table(replace(file, remarks=remarks), table, 0.0, known)
+        uncertain = rotor_sigma(file, known.gear_set) * squared / inertia  # of the wave generator: what is given is exact
+        return fit_table(replace(file, remarks=remarks), table, uncertain, known)
 
 
 def _falls(speed: Array) -> bool:

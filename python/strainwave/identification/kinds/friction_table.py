@@ -198,7 +198,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     Args:
         file: that it came from
         table: speed and torque, and what else friction may depend on
-        uncertain: standard deviation of the torque constant that its torques rest on, over its value [1]
+        uncertain: standard deviation of the torque constant or inertia that its torques rest on, over its value [1]
         known: before it
     """
     name, gear = file.path.name, known.gear_set.gear
