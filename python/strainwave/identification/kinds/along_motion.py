@@ -100,16 +100,12 @@ SPEED_BINS = 16  # of each direction of motion, with as many samples each
 
 def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     """Return the estimates of a log along its motion, and between its encoders; and the gear with them."""
-    taken, start = log_of(file, known), known.initial.gear
-    drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
+    taken, name, start = log_of(file, known), file.path.name, known.initial.gear
+    drive, recording, in_current = taken.drive, taken.recording, taken.in_current
     models = _models(taken)
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
-    others = [each for each in models if each.model is not best.model]
-    log = best.log
-    other = _other_laws(best, others, in_current) if taken.has_friction else ()
-    of_model = [*_delay(best), *other]
-    if file.neighbours and not file.regressors:
-        of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
+    others, log = [each for each in models if each.model is not best.model], best.log
+    remarks = [*_other_joints(file, log), *_delay(best), *(_other_laws(best, others, in_current) if taken.has_friction else ())]
     apart = spread_by_models(best, others)
     judged, estimates = _judged(best, apart, taken, known)
     if judged is not best:
@@ -118,66 +114,51 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
             judged, estimates = best, list(_of_motion(best, apart, taken))
         else:
             held_out, predicted = replace(refitted, plain=held_out.plain), by_set
-    checks = list(held_out_error(held_out, file.path.name, file.neighbours))
-    between = FileResult(file.path.name)
+    checks = list(held_out_error(held_out, name, file.neighbours))
+    between = FileResult(name)
     if set(ENCODERS) <= set(recording.names):
         errors = _errors(file, recording, abs(start.kinematics.ratio))
-        between, known = between_encoders(taken, judged, errors, known, file.path.name)
+        between, known = between_encoders(taken, judged, errors, known, name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
-        checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
-        if rotor := next(
-            (each for each in between.estimates if each.path == MOTOR_INERTIA and not each.why and not in_current), None
-        ):
+        checks += [*ratio_of_encoders(errors.ratio, drive, name), *between.checks]
+        rotor = next((each for each in between.estimates if each.path == MOTOR_INERTIA and not each.why), None)
+        if rotor is not None and not in_current:
             squared = drive.gear.kinematics.ratio**2
             taken = replace(taken, drive=drive.replace({MOTOR_INERTIA: rotor.value}), rotor=rotor.sigma * squared)
             judged, estimates = _judged(with_rotor(best, rotor.value), apart, taken, known)
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
-        of_model += [*errors.remarks, *between.remarks]
-        known = with_error(known, errors, file.path.name)
-    best = judged
+        remarks += [*errors.remarks, *between.remarks]
+        known = with_error(known, errors, name)
+    best, speed, ratio = judged, log.motion.speed, start.kinematics.ratio
     if not in_current and taken.has_friction:
-        known, estimates = _with_friction(known, best, estimates, file.path.name)
-    law = sliding(best.fit.parts[0].model)
-    name, speed = file.path.name, log.motion.speed
-    ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    if not in_current and taken.has_friction:
-        given = file.constants.get("torque_constant", 0.0)
+        known, estimates = _with_friction(known, best, estimates, name)
         checks += friction_of_log(
-            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, constant=given
-        )
-    checks += [
-        *unit_of_torque(file),
-        *speed_against_angle(file),
-        input_speed(speed, name),
-        *_given_inertia(taken, name),
-        *_torque_constant(taken, name),
-    ]
+            sliding(best.fit.parts[0].model), start.friction_input, speed, log.effort, name, ratio=ratio,
+            column=file.columns[log.effort], constant=file.constants.get("torque_constant", 0.0),
+        )  # fmt: skip
+    checks += [*unit_of_torque(file), *speed_against_angle(file), input_speed(speed, name), *_given_inertia(taken, name)]
+    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
+    if not in_current and constant > 0.0:
+        at_rows = np.interp(recording.time, taken.log.motion.time, taken.log.motion.speed)
+        checks += torque_constant_by_voltage(recording, at_rows, constant, name)
     checks += checks_of_motion(best, drive, recording, held_out, file)
     unchecked = _unchecked(taken, file, estimates, {check.name for check in checks})
-    of_model += _scales(unchecked, log.effort)
     shaped = _shape(predicted, log, held_out, ratio, name)
-    checks += shaped.checks
-    every = (
-        *of_model,
-        *speed_of_another_clock(file),
-        *file.remarks,
-        *remarks,
-        *_shares(best.fit, file.regressors),
-        *shaped.remarks,
-    )
+    remarks += [
+        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *file.remarks, *taken.remarks,
+        *_shares(best.fit, file.regressors), *shaped.remarks,
+    ]  # fmt: skip
     dry = [each for each in estimates if each.path == COULOMB_PATH and (not each.why or each.in_combination)]
     of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
-    pictures = (Picture(predicted), *of_friction, *between.pictures)
-    return (
-        FileResult(
-            name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit, bend=best.bend, between=between.between, unchecked=unchecked,
-        ),
-        known,
+    result = FileResult(
+        name, file, best.name, tuple(estimates), tuple(remarks), (*checks, *shaped.checks),
+        pictures=(Picture(predicted), *of_friction, *between.pictures), held_out=held_out, fit=best.fit, bend=best.bend,
+        between=between.between, unchecked=unchecked,
     )  # fmt: skip
+    return result, known
 
 
 def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
@@ -212,13 +193,17 @@ def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
     return fit_motion(logs, taken.drive, priors=priors)
 
 
-def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
-    """Return the sentence about the terms of other joints that move."""
+def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
+    """Yield the sentence about the terms of other joints that move."""
+    names, terms = list(file.neighbours), list(log.regressors)
+    if not names or file.regressors:
+        return
     which = f"joint {names[0]} moves too: " if len(names) == 1 else f"joints {listed(names)} move too: "
     if not terms:
-        return f"{which}none of their terms makes the model predict better; if they load it, record longer"
+        yield f"{which}none of their terms makes the model predict better; if they load it, record longer"
+        return
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
-    return f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
+    yield f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
 
 
 def _delay(best: MotionCandidate) -> Iterator[str]:
@@ -340,15 +325,6 @@ def _with_friction(
     losses = {each.path: each for each in moved(estimates, again, best.fit, {}) if each.path in LOSSES}
     estimates = [losses.get(each.path, each) for each in estimates]
     return known.with_fit(again.parts[0].model.gear, ["friction_mesh"], estimates, name), estimates
-
-
-def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
-    """Yield the check of the torque constant by the voltage that the motor induces, if a log has both."""
-    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
-    if taken.in_current or constant <= 0.0:
-        return
-    speed = np.interp(taken.recording.time, taken.log.motion.time, taken.log.motion.speed)
-    yield from torque_constant_by_voltage(taken.recording, speed, constant, name)
 
 
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
