@@ -30,9 +30,8 @@ USUAL_TORQUE_CONSTANT = 0.1  # N.m/A, of motors of robots' joints (assumed)
 CONSTANT_SPREAD = float(np.log(2.0))  # standard deviation of its logarithm (assumed)
 FRICTION_SPREAD = float(np.log(3.0))  # of the logarithm of the friction of gears of about one size (assumed)
 RATING_SPREAD = float(np.log(2.0))  # of the logarithm of a torque beyond the largest of the ratings (assumed)
-SHARE_OF_TORQUES = (
-    0.8  # of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed)
-)
+# Of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed).
+SHARE_OF_TORQUES = 0.8
 SHARE_OF_ROBOTS = 0.95  # of the torques with a word of robots, that are those of joints (assumed)
 SHARE_OF_SIDE = 0.8  # of the torques whose name contains no side, that are counted where the motion was measured (assumed)
 # Of the columns without a unit, in N.m or A and not in thousandths of it: small motors have torques in mN.m (assumed).
@@ -45,10 +44,7 @@ RANGE_OF_SPEEDS = float(np.log(1e6))  # of the logarithm of these: from a hundre
 RANGE_BEHIND_GEAR = 10.0  # of the logarithm of the friction that such a torque contains, below that of the gear (assumed)
 MIN_ODDS = 10.0  # of a reading against each other one, above which it is taken
 SIDES_OF_TORQUE: dict[str, Side] = {"input_torque": "input", "joint_torque": "output"}  # of torques
-UNITS_OF_QUANTITY: dict[str, tuple[str, str]] = {
-    "torque": ("N.m", "mN.m"),
-    "current": ("A", "mA"),
-}  # usual one first
+USUAL_UNITS: dict[str, tuple[str, str]] = {"torque": ("N.m", "mN.m"), "current": ("A", "mA")}  # usual one first
 
 
 @dataclass(frozen=True)
@@ -238,7 +234,7 @@ def efforts_of(file: Recognised, known: GearSoFar, given: FileMapping) -> list[E
     per_ampere, spread = (USUAL_TORQUE_CONSTANT, CONSTANT_SPREAD) if constant is None else (float(constant), 0.0)
     readings = []
     for (name, side), share in shares.items():
-        usual, _ = units = UNITS_OF_QUANTITY[CHANNELS[name].quantity]
+        usual, _ = units = USUAL_UNITS[CHANNELS[name].quantity]
         size = {"current": per_ampere, "joint_torque": 1.0 / ratio}.get(name, 1.0)
         of_usual = SHARE_OF_USUAL_UNIT[name]
         of_unit = dict(zip(units, (of_usual, 1.0 - of_usual), strict=True)) if is_unit_open else {file.units[channel]: 1.0}

@@ -32,7 +32,7 @@ from strainwave.identification.results.file_result import (
     FileResult,
     is_uncertain,
 )
-from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
+from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar, compared_path, is_of
 from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.statistics.residuals import correlation_length
@@ -67,7 +67,9 @@ def between_encoders(
         _check(taken.log, drive, errors)
         scale = _scale(estimates, taken, drive)
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
-        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
+        turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi  # counted the other way round
+        law = errors.law.replace(phase=[phase + turned for phase in errors.law.phase])
+        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, law)
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
     of_gear = tuple(_estimates(found, scale, known, taken.in_current))
@@ -82,7 +84,9 @@ def between_encoders(
         ),
         between=found.fit,
     )  # fmt: skip
-    parts = [*(() if taken.in_current else TORQUE_PARTS), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
+    waves = (each for each in zip(found.fit.estimates, found.sigmas, strict=True) if each[0].path.startswith(ERROR_AMPLITUDE))
+    has_waves = any(not is_uncertain(each.value, float(sigma)) for each, sigma in waves)
+    parts = [*(() if taken.in_current else TORQUE_PARTS), *(["kinematic_error"] if has_waves else [])]
     finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()
     return result, _with_parts(known, found, [part for part in parts if part not in known.determined - finer], result)
 
@@ -176,13 +180,6 @@ def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Rec
     return recording.with_column("output_angle", -recording["output_angle"], recording.unit("output_angle"))
 
 
-def _law(errors: TransmissionError, drive: Drive) -> Any:
-    """Return the kinematic error of two encoders; with the output counted the other way round it has the other sign."""
-    law = errors.law
-    turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi
-    return law.replace(phase=[phase + turned for phase in law.phase])
-
-
 # ---- Estimates and remarks -------------------------------------------------------------------------------------------
 
 
@@ -247,24 +244,12 @@ def _motor(
     yield estimate.in_current() if taken.in_current else estimate
 
 
-def _has_kinematic_error(found: ElasticCandidate) -> bool:
-    """True if an order is determined; without any, the gear keeps the kinematic error of the start set."""
-    waves = zip(found.fit.estimates, found.sigmas, strict=True)
-    of_waves = [(each.value, float(sigma)) for each, sigma in waves if each.path.startswith("gear.kinematic_error.amplitude")]
-    return any(not is_uncertain(value, sigma) for value, sigma in of_waves)
-
-
 def _path(path: str, found: ElasticCandidate, law: Any) -> str:
     """Return the path by which a number is compared with those of other files."""
-    if path == "gear.stiffness.k" and _first_segment(found, law):
-        return "gear.stiffness.k1"
+    is_linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
+    if path == "gear.stiffness.k" and is_linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1:
+        return "gear.stiffness.k1"  # the first of three segments, of which the log has reached no other
     return compared_path(path, found.drive.gear)
-
-
-def _first_segment(found: ElasticCandidate, law: Any) -> bool:
-    """True if a linear spring is the first of three segments, of which the log has reached no other."""
-    linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
-    return linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1
 
 
 def _law_of(path: str, found: ElasticCandidate) -> str:

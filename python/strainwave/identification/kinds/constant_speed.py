@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -136,22 +137,15 @@ def _or_refused(
     name: str, fit: Callable[[Sequence[ConstantSpeedRun], GearSoFar], Together], files: Sequence[Recognised], known: GearSoFar
 ) -> Together:
     """Return what the runs of files determine together, or a result of this name that is refused."""
+    runs = list[ConstantSpeedRun]()
     try:
-        return fit(_runs(files, known), known)
+        for file in files:
+            with suppress(ValueError):  # one that cannot be used, as its own result states
+                run = run_of(file, with_ratio(known, file))
+                runs += [run] if run is not None else []
+        return fit(runs, known)
     except (ValueError, FloatingPointError) as error:
         return (FileResult(name, refused=str(error)),), known
-
-
-def _runs(files: Sequence[Recognised], known: GearSoFar) -> list[ConstantSpeedRun]:
-    """Return the runs of files; those that cannot be used are left out."""
-    found = []
-    for file in files:
-        try:
-            run = run_of(file, with_ratio(known, file))
-        except ValueError:
-            continue
-        found += [run] if run is not None else []
-    return found
 
 
 def _is_explained(file: Recognised, known: GearSoFar) -> bool:
