@@ -270,8 +270,8 @@ def read_measurements(
 def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
     path = file.path
     if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
-        known = listed(f"*{suffix}" for suffix in FORMATS)
-        return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {known}")
+        suffixes = listed(f"*{suffix}" for suffix in FORMATS)
+        return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {suffixes}")
     if file.recording is None and (other := other_format(path)):
         return FileResult(path.name, refused=other)
     try:
@@ -284,8 +284,8 @@ def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognise
 
 def _mapping_of(mapping: Mapped, path: Path, kind: str | None) -> FileMapping | None:
     """Return what a person states of a file, with its kind."""
-    found = mapping if isinstance(mapping, FileMapping) or mapping is None else mapping(path)
-    return found if kind is None else replace(found or FileMapping(), kind=kind)
+    stated = mapping if isinstance(mapping, FileMapping) or mapping is None else mapping(path)
+    return stated if kind is None else replace(stated or FileMapping(), kind=kind)
 
 
 def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
@@ -371,8 +371,8 @@ def _fitted(
 
 def _fit_of_file(kind: Kind, file: Recognised, known: GearSoFar, mapping: Mapped) -> tuple[FileResult, GearSoFar]:
     """Return the result of a file, and the gear with it."""
-    given = _mapping_of(mapping, file.path, None)
-    before = replace(with_ratio(known, file), side=None if given is None else given.side)
+    stated = _mapping_of(mapping, file.path, None)
+    before = replace(with_ratio(known, file), side=None if stated is None else stated.side)
     file = file.at_ratio(before.gear_set.gear.kinematics.ratio)
     try:
         return kind.fit(file, before)
@@ -450,10 +450,11 @@ def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult])
     if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
         return gear_set
     try:
-        found = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
+        prediction = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
     except (ValueError, FloatingPointError):  # no torque along its motion can be compared
         return gear_set
     own = Validation(
-        one_line(found.name), found.kind, found.channel, found.unit, found.error, found.varies, found.error, found.varies
-    )
+        one_line(prediction.name), prediction.kind, prediction.channel, prediction.unit, prediction.error, prediction.varies,
+        prediction.error, prediction.varies,
+    )  # fmt: skip
     return replace(gear_set, validation=(*gear_set.validation, own))

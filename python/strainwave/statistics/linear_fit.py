@@ -132,12 +132,12 @@ def own_share(columns: Array, others: Array | None = None) -> Array:
     [0.707, 0.707]
     """
     beside = np.zeros((len(columns), 0)) if others is None else others
-    found = []
+    shares = []
     for place, column in enumerate(columns.T):
         rest = np.column_stack([np.delete(columns, place, axis=1), beside])
         left = column - rest @ solved(rest, column) if rest.shape[1] else column
-        found.append(float(np.linalg.norm(left)) / max(float(np.linalg.norm(column)), 1e-300))
-    return np.array(found)
+        shares.append(float(np.linalg.norm(left)) / max(float(np.linalg.norm(column)), 1e-300))
+    return np.array(shares)
 
 
 def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left: Array) -> Array:
@@ -150,9 +150,9 @@ def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left
     moved, gains = [], []
     for rival in rivals.T:
         more = np.column_stack([columns, rival])
-        found = solved(more, target)
-        rest = target - more @ found
-        moved.append(found[:-1] - values)
+        coefficients = solved(more, target)
+        rest = target - more @ coefficients
+        moved.append(coefficients[:-1] - values)
         gains.append(0.5 * independent * np.log(squares / max(float(rest @ rest), 1e-300)) - 1.0)
     evidence = np.exp(np.array([0.0, *gains]) - max(0.0, *gains))
     shares = evidence[1:] / evidence.sum()

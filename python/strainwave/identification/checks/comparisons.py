@@ -198,10 +198,10 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
     remarks = dict[str, list[str]]()
     for path in LOAD_PATHS:
         own = {log.name: next((each for each in log.estimates if each.path == path), None) for log in logs}
-        known = {name: each for name, each in own.items() if each is not None and not each.why}
-        for first, reference in list(known.items())[:1]:
+        determining = {name: each for name, each in own.items() if each is not None and not each.why}
+        for first, reference in list(determining.items())[:1]:
             for name, each in own.items():
-                if (each is None or name in known) and (words := _load_apart(each, reference)):
+                if (each is None or name in determining) and (words := _load_apart(each, reference)):
                     remarks.setdefault(name, []).append(f"{words}, of {first}")
     causes = "one joint had another load or its arm another pose, or these are two joints, each with a gear of its own"
     return {name: f"its load differs: {'; '.join(words)}; {causes}" for name, words in remarks.items()}
@@ -212,8 +212,8 @@ def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
         shows = reference.path == GRAVITY_PATH and reference.value > MAX_DISTANCE * reference.sigma
         return f"no {GRAVITY_PATH} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
-    found = _contradiction(estimate, reference)
-    return found.words if estimate.unit == reference.unit and found.apart > MAX_DISTANCE else ""
+    difference_of_loads = _contradiction(estimate, reference)
+    return difference_of_loads.words if estimate.unit == reference.unit and difference_of_loads.apart > MAX_DISTANCE else ""
 
 
 def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, FileEstimate] | None:

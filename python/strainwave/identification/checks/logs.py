@@ -149,9 +149,9 @@ def speed_of_another_clock(file: Recognised) -> Iterator[str]:
 def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
     """Yield each speed over the slope of its angle, its channel, and the names of the columns of angle and speed."""
     record = file.recording
-    for angle in set(record.names) & {"input_angle", "output_angle"}:
+    for angle in ("input_angle", "output_angle"):
         speed = angle.replace("angle", "speed")
-        if speed not in record.names or "time" not in record.names:
+        if not {angle, speed, "time"} <= set(record.names):
             continue
         if factor := abs(speed_per_slope(record[angle], record[speed], record.time)):
             names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
@@ -193,11 +193,11 @@ def torque_constant_by_voltage(recording: Recording, speed: Array, constant: flo
     columns = np.stack([recording["current"], speed, np.ones_like(speed)], axis=1)
     if not columns.any(axis=0).all():
         return
-    found = solved(columns, recording["voltage"])
-    left = recording["voltage"] - columns @ found
+    coefficients = solved(columns, recording["voltage"])
+    left = recording["voltage"] - columns @ coefficients
     scores = [float(np.mean(each)) for each in np.array_split(left * speed, VOLTAGE_BLOCKS)]
     sigma = float(np.std(scores, ddof=1)) * len(left) / np.sqrt(VOLTAGE_BLOCKS) / float(speed @ speed)
-    induced = float(found[1])
+    induced = float(coefficients[1])
     if not sigma < MAX_CONSTANT_SIGMA * abs(induced):
         return
     off = abs(abs(induced) / constant - 1.0)
@@ -271,19 +271,19 @@ def angle_in_gravity(best: MotionCandidate, drive: Drive, recording: Recording, 
     if len(log.motion.rows) < MOTION_BLOCKS * MIN_ROWS_PER_BLOCK:
         return
     usual = _squares(log, drive, _best_scale(best, drive), delay)  # a ratio near the one taken may be the simpler mistake
-    share, found, remedy = 1.0, "", ""
+    share, mistake, remedy = 1.0, "", ""
     for what, factor, option in _mistakes(recording, ratio, file.columns):
         if np.ptp(log.motion.angle) * factor / ratio > MAX_JOINT_ANGLE:
             continue
         other = _squares(log, drive, factor, delay)
         gain = float(np.sqrt(usual.sum() / max(other.sum(), 1e-300)))
         if gain > share and _is_less(other, usual):
-            share, found, remedy = gain, what, option
-    wrong = f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {found}"
+            share, mistake, remedy = gain, what, option
+    wrong = f"gravity does not go with the sine of its angle: the fit leaves {share:.3g} times what it leaves if {mistake}"
     yield Check(
         "angle in the sine of gravity", file.path.name, share, MAX_OF_ANOTHER_UNIT, "1", share > MAX_OF_ANOTHER_UNIT,
-        wrong if found else "gravity goes with the sine of its angle: no other unit or side of it leaves less",
-        f"see whether it is so, and state it: {remedy}" if found else "",
+        wrong if mistake else "gravity goes with the sine of its angle: no other unit or side of it leaves less",
+        f"see whether it is so, and state it: {remedy}" if mistake else "",
     )  # fmt: skip
 
 
@@ -358,11 +358,11 @@ def ratio_by_orders(drive: Drive, recording: Recording, source: str) -> Iterator
         return
     ratio = abs(float(drive.gear.kinematics.ratio))
     off = min(abs(each - ratio) for each in concluded)
-    found = " or ".join(map(str, concluded))
+    ratios = " or ".join(map(str, concluded))
     options = " or ".join(f"--constant ratio={each}" for each in concluded)
     yield Check(
         RATIO_BY_ORDERS, source, off, 1.0, "1", off > 1.0,
-        f"the ripple of the {column.replace('_', ' ')} over the angle of the output is that of a ratio of {found}, the ratio "
+        f"the ripple of the {column.replace('_', ' ')} over the angle of the output is that of a ratio of {ratios}, the ratio "
         f"of the gear is {ratio:.6g}",
         f"see whether the start set is that of this gear, or give its ratio: {options}",
     )  # fmt: skip
@@ -411,8 +411,8 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
 
 def pendulum_length(estimates: tuple[Estimate, ...], source: str) -> Iterator[Check]:
     """Yield the check that inertia and gravity of a load are those of a body: J g / G is the length of a pendulum."""
-    found = {each.path: each for each in estimates}
-    inertia, gravity = found.get("load.inertia"), found.get("load.gravity_torque")
+    by_path = {each.path: each for each in estimates}
+    inertia, gravity = by_path.get("load.inertia"), by_path.get("load.gravity_torque")
     if inertia is None or gravity is None or min(inertia.value, gravity.value) <= 0.0:
         return
     relative = float(np.hypot(inertia.sigma / inertia.value, gravity.sigma / gravity.value))
@@ -489,11 +489,11 @@ def halves(best: MotionCandidate, source: str, left_out: tuple[str, ...]) -> Ite
 
 def _determined(best: MotionCandidate, rows: NDArray[np.bool_]) -> Mapping[str, Estimate]:
     """Return the numbers of the drive that some of the samples determine, by path."""
-    found = best.fitted_to(rows)
-    nuisances = {nuisance.name for part in found.parts for nuisance in part.experiment.nuisances}
+    half_fit = best.fitted_to(rows)
+    nuisances = {nuisance.name for part in half_fit.parts for nuisance in part.experiment.nuisances}
     return {
         each.path: each
-        for each in found.estimates
+        for each in half_fit.estimates
         if each.path not in nuisances and each.path not in best.model.ties and "phase" not in each.path
         and not is_uncertain(each.value, each.sigma)
     }  # fmt: skip

@@ -72,14 +72,14 @@ def friction_level(
         remedy: what to check first
         max_factor: by which both may differ
     """
-    found, before = float(law.steady(speed)), float(start.steady(speed))
-    if before <= 0.0 or not found > 0.0:
+    fitted, before = float(law.steady(speed)), float(start.steady(speed))
+    if before <= 0.0 or not fitted > 0.0:
         return None
-    factor = found / before
+    factor = fitted / before
     return Check(
         "friction of the start set", source, max(factor, 1.0 / factor), max_factor, "1",
         not 1.0 / max_factor < factor < max_factor,
-        f"its friction is {found:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
+        f"its friction is {fitted:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
         f"({before:.3g} N·m)",
         remedy,
     )  # fmt: skip
@@ -132,20 +132,20 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
     if accelerating.failed or side == "input" or ratio < MIN_RATIO:
         return
     speed = float(np.exp(np.mean(np.log(np.abs(table.speed)))))
-    law, known = found.gear.friction_input, start.friction_input
-    check = friction_level(law, known, speed, source, "")
+    law, law_of_set = found.gear.friction_input, start.friction_input
+    check = friction_level(law, law_of_set, speed, source, "")
     if check is None:
         return
-    factor = law.steady(speed) / known.steady(speed)
+    factor = law.steady(speed) / law_of_set.steady(speed)
     mistake, rest = nearest(factor, wrong_units("torque", recording.unit("torque")))
     remedy = f"{mistake}see whether the units of both columns are right"
     if side == "output":
         remedy = f"if it was measured at the input, give --side input; {mistake}see whether units are right"
     elif factor > MAX_FACTOR:
         ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])  # were it measured at the output
-        off = np.abs(np.log(np.maximum(law.steady(ends) / ratio / known.steady(ends * ratio), 1e-300))).max()
+        off = np.abs(np.log(np.maximum(law.steady(ends) / ratio / law_of_set.steady(ends * ratio), 1e-300))).max()
         if off < min(np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))):
-            at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
+            at_joint = law.steady(speed) / ratio / law_of_set.steady(speed * ratio)
             remedy = (
                 f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured "
                 "there, give --side output; if at the input, --side input"
@@ -169,10 +169,10 @@ def friction_of_log(
         constant: that a person gave of the motor [N.m/A]; 0 if none
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
-    found, before = float(law.steady(speed)), float(start.steady(speed))
-    if speed <= 0.0 or before <= 0.0 or found < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
+    fitted, before = float(law.steady(speed)), float(start.steady(speed))
+    if speed <= 0.0 or before <= 0.0 or fitted < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
         return
-    factor = found / before
+    factor = fitted / before
     unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
     if effort == "current" and constant:
         constant *= 1e-3 if factor > 1.0 else 1e3
@@ -257,8 +257,8 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
         )  # fmt: skip
         if share > MAX_FRICTION_SHARE:
             return
-    measured, known = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
-    factor, squared, limit = max(measured / known, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
+    measured, of_set = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
+    factor, squared, limit = max(measured / of_set, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
     mistakes = {
         "angle and torque were measured at the input: give --side input": 1.0 / squared,
         "angle and torque were measured at the output: give --side output": squared,
@@ -268,7 +268,7 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     mistakes |= {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(angle)).items()}
     yield Check(
         "stiffness of the start set", source, max(factor, 1.0 / factor), limit, "1", not 1.0 / limit < factor < limit,
-        f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
+        f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({of_set:.3g} N·m/rad)",
         f"{nearest(factor, mistakes)[0]}see whether sides and units are right, and the start set is that of this gear",
     )  # fmt: skip
 

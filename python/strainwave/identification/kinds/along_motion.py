@@ -100,59 +100,59 @@ SPEED_BINS = 16  # of each direction of motion, with as many samples each
 
 def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     """Return the estimates of a log along its motion, and between its encoders; and the gear with them."""
-    taken, name, start = log_of(file, known), file.path.name, known.initial.gear
-    drive, recording, in_current = taken.drive, taken.recording, taken.in_current
-    models = _models(taken)
+    prepared, name, start = log_of(file, known), file.path.name, known.initial.gear
+    drive, recording, in_current = prepared.drive, prepared.recording, prepared.in_current
+    models = _models(prepared)
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
     others, log = [each for each in models if each.model is not best.model], best.log
-    remarks = [*_other_joints(file, log), *_delay(best), *(_other_laws(best, others, in_current) if taken.has_friction else ())]
+    remarks = [*_other_joints(file, log), *_delay(best), *_other_laws(best, others, prepared)]
     apart = spread_by_models(best, others)
-    judged, estimates = _judged(best, apart, taken, known)
+    judged, estimates = _judged(best, apart, prepared, known)
     if judged is not best:
         refitted, by_set = refit(judged)
         if refitted.error > MAX_SHARE_OF_PLAIN * held_out.error:  # the record contradicts the set: no prior
-            judged, estimates = best, list(_of_motion(best, apart, taken))
+            judged, estimates = best, list(_of_motion(best, apart, prepared))
         else:
             held_out, predicted = replace(refitted, plain=held_out.plain), by_set
     checks = list(held_out_error(held_out, name, file.neighbours))
     between = FileResult(name)
     if set(ENCODERS) <= set(recording.names):
         errors = _errors(file, recording, abs(start.kinematics.ratio))
-        between, known = between_encoders(taken, judged, errors, known, name)
+        between, known = between_encoders(prepared, judged, errors, known, name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, name), *between.checks]
         rotor = next((each for each in between.estimates if each.path == MOTOR_INERTIA and not each.why), None)
         if rotor is not None and not in_current:
             squared = drive.gear.kinematics.ratio**2
-            taken = replace(taken, drive=drive.replace({MOTOR_INERTIA: rotor.value}), rotor=rotor.sigma * squared)
-            judged, estimates = _judged(with_rotor(best, rotor.value), apart, taken, known)
+            prepared = replace(prepared, drive=drive.replace({MOTOR_INERTIA: rotor.value}), rotor=rotor.sigma * squared)
+            judged, estimates = _judged(with_rotor(best, rotor.value), apart, prepared, known)
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
         known = with_error(known, errors, name)
     best, speed, ratio = judged, log.motion.speed, start.kinematics.ratio
-    if not in_current and taken.has_friction:
+    if not in_current and prepared.has_friction:
         known, estimates = _with_friction(known, best, estimates, name)
         checks += friction_of_log(
             sliding(best.fit.parts[0].model), start.friction_input, speed, log.effort, name, ratio=ratio,
             column=file.columns[log.effort], constant=file.constants.get("torque_constant", 0.0),
         )  # fmt: skip
-    checks += [*unit_of_torque(file), *speed_against_angle(file), input_speed(speed, name), *_given_inertia(taken, name)]
-    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
+    checks += [*unit_of_torque(file), *speed_against_angle(file), input_speed(speed, name), *_given_inertia(prepared, name)]
+    constant = float(getattr(prepared.drive.motor, "torque_constant", 0.0))
     if not in_current and constant > 0.0:
-        at_rows = np.interp(recording.time, taken.log.motion.time, taken.log.motion.speed)
+        at_rows = np.interp(recording.time, prepared.log.motion.time, prepared.log.motion.speed)
         checks += torque_constant_by_voltage(recording, at_rows, constant, name)
     checks += checks_of_motion(best, drive, recording, held_out, file)
-    unchecked = _unchecked(taken, file, estimates, {check.name for check in checks})
+    unchecked = _unchecked(prepared, file, estimates, {check.name for check in checks})
     shaped = _shape(predicted, log, held_out, ratio, name)
     remarks += [
-        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *file.remarks, *taken.remarks,
+        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *file.remarks, *prepared.remarks,
         *_shares(best.fit, file.regressors), *shaped.remarks,
     ]  # fmt: skip
     dry = [each for each in estimates if each.path == COULOMB_PATH and (not each.why or each.in_combination)]
-    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
+    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and prepared.has_friction else []
     result = FileResult(
         name, file, best.name, tuple(estimates), tuple(remarks), (*checks, *shaped.checks),
         pictures=(Picture(predicted), *of_friction, *between.pictures), held_out=held_out, fit=best.fit, bend=best.bend,
@@ -216,10 +216,10 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
 
 def _errors(file: Recognised, recording: Recording, ratio: float) -> TransmissionError:
     """Return the transmission error; without orders of the input if the ratio of its motor angle was only assumed."""
-    column, given = file.columns.get("reflected_angle"), file.constants.get("ratio")
-    assumed = column is not None and given is None
+    column, stated = file.columns.get("reflected_angle"), file.constants.get("ratio")
+    assumed = column is not None and stated is None
     option = "--constant ratio=NUMBER"
-    errors = transmission_error(recording, ratio=ratio if assumed else given, ratio_option=option)
+    errors = transmission_error(recording, ratio=ratio if assumed else stated, ratio_option=option)
     if not assumed:
         return errors
     why = (
@@ -266,10 +266,10 @@ def _scales(unchecked: Mapping[str, str], effort: str) -> Iterator[str]:
         yield f"it does not check {names[0]}: friction, inertia and gravity scale with it"
 
 
-def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:
+def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[str]:
     """Yield a sentence for each law of friction that predicts as well: numbers of friction belong to their law."""
-    for other in other_laws(best, others):
-        law, unit = other.model.law, "A" if in_current else "N·m"
+    for other in other_laws(best, others) if taken.has_friction else ():
+        law, unit = other.model.law, "A" if taken.in_current else "N·m"
         yield (
             f"another law of friction, {type(law).__name__}, predicts as well, with a Coulomb torque of {law.coulomb:.3g} "
             f"{unit}: use the friction over the measured speeds, not the Coulomb torque alone"
@@ -332,12 +332,12 @@ def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     if LOAD_INERTIA not in taken.given:
         return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
-    given = drive.motor.inertia + drive.gear.input_inertia + taken.given[LOAD_INERTIA] / drive.gear.kinematics.ratio**2
-    off = (abs(shown - given) if taken.motor_known else max(given - shown, 0.0)) / given
+    stated = drive.motor.inertia + drive.gear.input_inertia + taken.given[LOAD_INERTIA] / drive.gear.kinematics.ratio**2
+    off = (abs(shown - stated) if taken.motor_known else max(stated - shown, 0.0)) / stated
     yield Check(
         "given inertia of the load", name, off, MAX_OFF_INERTIA, "1", off > MAX_OFF_INERTIA,
         f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
-        f"{given:.3g} with motor and gear",
+        f"{stated:.3g} with motor and gear",
         "see whether load_inertia, motor_inertia, ratio and torque constant are right",
     )  # fmt: skip
 
@@ -378,32 +378,32 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         sigma = float(np.linalg.norm(own))
         if path == "load.gravity_torque" and not best.log.regressors:
             sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
-        found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
+        number = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(path, 0.0)
-        found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
-        found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
+        number = number.resting_on(taken.relative, offset + induced.get(path, 0.0))
+        number = number.resting_on(taken.of_resistance, offset)
+        number = number.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
         if not taken.has_friction and path.startswith("gear.friction_"):
-            found = replace(found, why=BEHIND_GEAR)
+            number = replace(number, why=BEHIND_GEAR)
         elif path in DRY_TORQUES and not best.log.both_ways:
-            found = replace(found, sigma=np.inf, why=ONE_WAY)
+            number = replace(number, sigma=np.inf, why=ONE_WAY)
         elif path.startswith(DETENT_PATHS) and is_one_wave(best.log):
-            found = replace(found, why=_one_wave(found, best), in_combination=True)
+            number = replace(number, why=_one_wave(number, best), in_combination=True)
         elif path.startswith(DEPTH_PATHS) and best.model.one_speed:
             share = prior_of_viscous(best.model.law, best.model.one_speed)[1] * best.model.one_speed / best.model.law.coulomb
-            found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
-        elif is_uncertain(found.value, abs(turned) * unknown):
-            found = replace(found, why=UNKNOWN_ROTOR)
-        elif not found.is_phase:
-            found = found.unless_uncertain()
+            number = replace(number, sigma=float(np.hypot(sigma, share * number.value)), why=DEPTH_BY_SET, in_combination=True)
+        elif is_uncertain(number.value, abs(turned) * unknown):
+            number = replace(number, why=UNKNOWN_ROTOR)
+        elif not number.is_phase:
+            number = number.unless_uncertain()
         elif path != "load.gravity_phase":
-            found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
+            number = replace(number, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
-            found = replace(found, why="the log determines no gravity")
-        yield found.in_current() if in_current else found
+            number = replace(number, why="the log determines no gravity")
+        yield number.in_current() if in_current else number
     for each in _at_one_speed(best, spread, apart) if best.model.one_speed else ():
-        found = each.resting_on(taken.relative)
-        yield found.in_current() if in_current else found
+        number = each.resting_on(taken.relative)
+        yield number.in_current() if in_current else number
 
 
 def _one_wave(detent: FileEstimate, best: MotionCandidate) -> str:

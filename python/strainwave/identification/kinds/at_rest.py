@@ -65,8 +65,8 @@ def angle_and_effort(columns: Sequence[Column], mapping: FileMapping) -> tuple[C
 
 def _one(columns: Sequence[Column], quantity: Quantity) -> Column | None:
     """Return the column of a quantity, of the input if there are several; None if it is not one."""
-    found = measured(columns, quantity)
-    own = [column for column in found if column.channel.side == "input"] or found
+    candidates = measured(columns, quantity)
+    own = [column for column in candidates if column.channel.side == "input"] or candidates
     return own[0] if len(own) == 1 else None
 
 
@@ -83,8 +83,8 @@ def estimate_of(each: Estimate, path: str, law: str, uncertain: float, why: str)
         uncertain: standard deviation of the torque constant over its value [1]
         why: the reason why the file does not determine it; empty if it does
     """
-    found = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
-    return found.sharing(uncertain * abs(each.value)).unless_uncertain()
+    estimate = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
+    return estimate.sharing(uncertain * abs(each.value)).unless_uncertain()
 
 
 def with_breakaway(known: GearSoFar, estimate: FileEstimate, name: str) -> tuple[GearSoFar, tuple[str, ...]]:

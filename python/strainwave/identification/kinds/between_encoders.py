@@ -69,26 +69,28 @@ def between_encoders(
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
         turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi  # counted the other way round
         law = errors.law.replace(phase=[phase + turned for phase in errors.law.phase])
-        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, law)
+        elastic = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, law)
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
-    of_gear = tuple(_estimates(found, scale, known, taken.in_current))
+    of_gear = tuple(_estimates(elastic, scale, known, taken.in_current))
     has_stiffness = any(each.path.startswith(STIFFNESS_PATHS) and not each.why for each in of_gear)
     result = FileResult(
-        source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
-        remarks=tuple(_remarks(found, scale, taken)),
-        checks=tuple(_inertias(found, scale, estimates, taken, source)),
+        source, model=elastic.name, estimates=(*of_gear, *_motor(elastic, of_gear, taken, best, errors)),
+        remarks=tuple(_remarks(elastic, scale, taken)),
+        checks=tuple(_inertias(elastic, scale, estimates, taken, source)),
         pictures=(
-            *([picture_of_twist(found.fit)] if has_stiffness else []),
-            Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),
+            *([picture_of_twist(elastic.fit)] if has_stiffness else []),
+            Picture(curves_of_shafts(elastic.fit), title="between the shafts", model=elastic.name),
         ),
-        between=found.fit,
+        between=elastic.fit,
     )  # fmt: skip
-    waves = (each for each in zip(found.fit.estimates, found.sigmas, strict=True) if each[0].path.startswith(ERROR_AMPLITUDE))
-    has_waves = any(not is_uncertain(each.value, float(sigma)) for each, sigma in waves)
+    has_waves = any(
+        each.path.startswith(ERROR_AMPLITUDE) and not is_uncertain(each.value, float(sigma))
+        for each, sigma in zip(elastic.fit.estimates, elastic.sigmas, strict=True)
+    )
     parts = [*(() if taken.in_current else TORQUE_PARTS), *(["kinematic_error"] if has_waves else [])]
-    finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()
-    return result, _with_parts(known, found, [part for part in parts if part not in known.determined - finer], result)
+    finer = {"hysteresis"} if _is_finer(elastic, of_gear, known) else set[str]()
+    return result, _with_parts(known, elastic, [part for part in parts if part not in known.determined - finer], result)
 
 
 def _is_finer(found: ElasticCandidate, estimates: Sequence[FileEstimate], known: GearSoFar) -> bool:
@@ -161,8 +163,8 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
         rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
         common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
         by_inertia = [_Scale(LOAD_INERTIA, inertia.sigma / inertia.value, common)]
-    known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
-    if not known:
+    usable = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
+    if not usable:
         missing = "is not known: give --constant motor_inertia=NUMBER"
         if taken.motor_known:
             missing = f"is not known well enough compared with that of the load: ± {taken.rotor:.2g} kg·m² at the output"
@@ -170,7 +172,7 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
             f"no torque at the output is known to count from: the log determines no gravity, and the inertia of the "
             f"motor {missing}"
         )
-    return known[0] if len(known) == 1 or known[0].relative < MAX_RELATIVE_TO_INERTIA * known[1].relative else known[1]
+    return usable[0] if len(usable) == 1 or usable[0].relative < MAX_RELATIVE_TO_INERTIA * usable[1].relative else usable[1]
 
 
 def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Recording:

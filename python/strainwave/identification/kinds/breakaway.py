@@ -67,8 +67,8 @@ class Breakaway(AtRest):
         name = file.path.name
         recording, uncertain = at_input(file, known)
         ramps = breakaways(recording)
-        found = breakaway_torque(ramps)
-        ways = (found.reverse, found.forward)
+        torque = breakaway_torque(ramps)
+        ways = (torque.reverse, torque.forward)
         sides = [each for each in ways if each is not None]
         both = _mean(sides)
         off = [abs(ramp.torque) - each.value for ramp in ramps if (each := ways[ramp.torque > 0.0]) is not None]
@@ -77,7 +77,7 @@ class Breakaway(AtRest):
         few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
         estimates = only_if_explained((estimate_of(both, BREAKAWAY_PATH, "", uncertain, few),), whole)
         after, below = with_breakaway(known, estimates[0], name)
-        remarks = (*file.remarks, *_remarks(found, len(ramps)), *below)
+        remarks = (*file.remarks, *_remarks(torque, len(ramps)), *below)
         checks = (*friction_at_rest(both.value, known.initial.gear, name), whole)
         return FileResult(name, file, "breakaway of each ramp", estimates, remarks, checks), after
 

@@ -80,21 +80,21 @@ class ConstantSpeed(Kind):
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         quantities = dict.fromkeys(column.channel.quantity for column in columns if column.channel.measured)
-        found = channels({quantity: measured(columns, quantity) for quantity in quantities})
-        effort = listed(found[name].name for name in ("torque", "current") if name in found)
-        side = mapping.side or next((column.channel.side for column in found.values() if column.channel.side), None)
-        robot = next((column.name for column in found.values() if column.robot), None) if side is None else None
-        if "speed" in found:
-            why = f"at one speed, {found['speed'].si.mean():.4g} rad/s: a record at constant speed"
-        elif "angle" in found:
-            turns = np.ptp(found["angle"].si) / (2.0 * np.pi)
-            why = f"over {found['angle'].name}, which runs on for {turns:.3g} turns"
+        by_channel = channels({quantity: measured(columns, quantity) for quantity in quantities})
+        effort = listed(by_channel[name].name for name in ("torque", "current") if name in by_channel)
+        side = mapping.side or next((column.channel.side for column in by_channel.values() if column.channel.side), None)
+        robot = next((column.name for column in by_channel.values() if column.robot), None) if side is None else None
+        if "speed" in by_channel:
+            why = f"at one speed, {by_channel['speed'].si.mean():.4g} rad/s: a record at constant speed"
+        elif "angle" in by_channel:
+            turns = np.ptp(by_channel["angle"].si) / (2.0 * np.pi)
+            why = f"over {by_channel['angle'].name}, which runs on for {turns:.3g} turns"
         elif "speed" in mapping.constants:
             why = f"at {mapping.constants['speed']:.4g} rad/s, as was given: a record at constant speed"
         else:
             why = "and nothing that moves: the output was locked, or the speed was constant and is not stated"
         why_side = (f"{robot} is what robots call a channel of a joint: it is taken to be at the output",) if robot else ()
-        return ColumnRoles(self.name, found, "output" if robot else side, (f"it has {effort} {why}", *why_side))
+        return ColumnRoles(self.name, by_channel, "output" if robot else side, (f"it has {effort} {why}", *why_side))
 
     def takes(self, file: Recognised, known: GearSoFar, files: Sequence[Recognised]) -> bool:
         """True also for logs at constant speed, but for one of few speeds whose torque changes as that of a log.
@@ -151,8 +151,8 @@ def _or_refused(
 def _is_explained(file: Recognised, known: GearSoFar) -> bool:
     """True if inertia, gravity and friction explain the torque of a log on data held out."""
     try:
-        found = log_of(file.at_ratio(known.gear_set.gear.kinematics.ratio), known)
-        squares, samples = sliding_squares(found.log, found.drive)
+        prepared = log_of(file.at_ratio(known.gear_set.gear.kinematics.ratio), known)
+        squares, samples = sliding_squares(prepared.log, prepared.drive)
     except (ValueError, FloatingPointError):
         return False
     return bool(squares.sum() < MAX_UNEXPLAINED**2 * samples.sum())
@@ -217,10 +217,10 @@ def run_of(file: Recognised, known: GearSoFar) -> ConstantSpeedRun | None:
     Raises:
         ValueError: it contains a current alone, and the torque constant is not known
     """
-    found = _motion(file)
-    if found is None or not {"torque", "input_torque", "joint_torque", "current"} & set(file.recording.names):
+    motion = _motion(file)
+    if motion is None or not {"torque", "input_torque", "joint_torque", "current"} & set(file.recording.names):
         return None
-    speed, parts, side, assumed = found
+    speed, parts, side, assumed = motion
     if not parts:
         return None
     ratio = abs(known.gear_set.gear.kinematics.ratio)
@@ -257,8 +257,8 @@ def _motion(file: Recognised) -> tuple[Array, Sequence[slice], Side, tuple[str, 
         fast = bool(np.median(np.abs(speed)) > MIN_MOTOR_SPEED)
         if of is None and side is None and not fast:
             assumed.append("no side is stated, the input is taken; otherwise add --side output")
-        taken: Side = "output" if (of or side) == "output" and not fast else "input"
-        return speed, parts, taken, tuple(assumed)
+        of_side: Side = "output" if (of or side) == "output" and not fast else "input"
+        return speed, parts, of_side, tuple(assumed)
     return None
 
 
@@ -429,29 +429,33 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     if not turning:
         return (), known
     recordings = [run.turning for run in turning if run.turning is not None]
-    found = fit_position(recordings)
+    position_fit = fit_position(recordings)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
-    left = Left(rms(found.residual), rms(found.friction), "N.m", MAX_SHARE_OF_TORQUE)
+    left = Left(rms(position_fit.residual), rms(position_fit.friction), "N.m", MAX_SHARE_OF_TORQUE)
     whole = error_left({"friction over the angle": left}, listed(names))
-    estimates = only_if_explained(_estimates(found, max(run.uncertain for run in turning), measured=measured), whole)
+    estimates = only_if_explained(_estimates(position_fit, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
-    remarks = list(_of_position(found, len(turning)))
+    remarks = list(_of_position(position_fit, len(turning)))
     sliding = law.law if law.name == "thermal" else law
-    waves = _waves(found)
+    waves = _waves(position_fit)
     sigmas = {each.path: each.sigma for each in estimates if not each.why}
     name, after = f"friction over the angle of {listed(names)}", known
     if not measured:
         remarks.append("no other file determines friction: the gear takes this law, valid at the angles and speeds measured")
-        after = known.with_parts({"friction_input": found.law}, sigmas, listed(names))
+        after = known.with_parts({"friction_input": position_fit.law}, sigmas, listed(names))
     elif waves and sliding.name != "cyclic":
         after = _modulated(known, waves, listed(names))
         remarks.append("the gear takes its waves around the friction that other files determine, relative to its mean")
     file = turning[0].file
     why = (f"at constant speed the angle of {listed(names)} turns once or more under a torque",)
-    columns = {"angle": found.angle, "torque": found.friction, "modelled": found.friction - found.residual}
+    columns = {
+        "angle": position_fit.angle,
+        "torque": position_fit.friction,
+        "modelled": position_fit.friction - position_fit.residual,
+    }
     rows = slice(0, len(recordings[0]))
-    order = np.argsort(found.angle[rows], kind="stable")
+    order = np.argsort(position_fit.angle[rows], kind="stable")
     curves = Recording(
         {each: values[rows][order] for each, values in columns.items()}, {"angle": "rad", "torque": "N.m", "modelled": "N.m"}
     )

@@ -89,7 +89,7 @@ class SteadyFriction(Kind):
         columns, load, loaded = _with_load(columns, speed)
         effort, torque = needed_effort(columns, self.title)
         side, why_side = side_of_table(speed, torque, mapping.side)
-        found = {"speed": speed, effort: torque, **load, **first(columns, "temperature")}
+        by_channel = {"speed": speed, effort: torque, **load, **first(columns, "temperature")}
         rows, remarks = len(speed.si), tuple[str, ...]()
         order = f", {rows} rows in {'no order of time' if (np.diff(speed.si) < 0.0).any() else 'the order of speed'}"
         if rows > MAX_ROWS:
@@ -98,11 +98,11 @@ class SteadyFriction(Kind):
                 raise QuestionError(f"{none}: give a row for each speed, or its time, as a log")
             steady = sum(part.stop - part.start for part in parts)
             remarks = (f"{steady} of its {rows} rows are steady; the means of {len(parts)} stretches at one speed are taken",)
-            means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in found.items()}
-            found = {name: replace(column, si=means[name]) for name, column in found.items()}
+            means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in by_channel.items()}
+            by_channel = {name: replace(column, si=means[name]) for name, column in by_channel.items()}
             order = " at one speed after another"
         why = f"its columns are {pair(speed, torque)}{order}: {self.title}"
-        return ColumnRoles(self.name, found, side, (why, why_side, *loaded), remarks)
+        return ColumnRoles(self.name, by_channel, side, (why, why_side, *loaded), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the laws of steady friction that a table may show."""
@@ -118,25 +118,25 @@ class SteadyFriction(Kind):
         slopes, covariance = slopes_by_numbers(gear_set, gear, lambda other: _at(table, other), "gear.friction_")
         changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, file.kind, "torque"))
         curves = {"speed": table.speed, "torque": table.torque, "predicted": table.torque - left, "residual": left}
-        found = Prediction(
+        prediction = Prediction(
             file.path.name, gear_set.name, file.kind, "torque", "N.m", rms(left), float(np.std(table.torque)),
             samples=len(left), changes=changes, error_with_changes=rms(left - explained),
             curves=Recording(curves, dict.fromkeys(curves, "N.m") | {"speed": "rad/s"}), remarks=(*file.remarks, *remarks),
         )  # fmt: skip
-        return judged(found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
+        return judged(prediction, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error where each speed is predicted from the others."""
         recording, _ = with_torque(file, known.gear_set)
         table = _table_of(recording, file.side, known.gear_set.gear)
-        found = fit_friction(table, known.gear_set.gear)
+        candidates = fit_friction(table, known.gear_set.gear)
         order = np.argsort(table.speed, kind="stable")
         return tuple(
             Ranked(
                 each.name, each.parameters, each.error, each.error_sigma, "N.m",
                 correlation_length(each.fit.residuals[0][order]), cost_of(each.law),
             )
-            for each in found
+            for each in candidates
         )  # fmt: skip
 
 

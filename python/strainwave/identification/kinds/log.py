@@ -62,7 +62,7 @@ class Log(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)
         _check_voltage(columns, [*torques, *currents])
-        found = channels(
+        by_channel = channels(
             {
                 "time": measured(columns, "time"),
                 "command": sorted(commanded(columns, "angle"), key=lambda column: not column.by_user)[:1],
@@ -72,21 +72,21 @@ class Log(Kind):
                 "rigid_torque": [column for column in columns if column.channel.modelled],
             }
         )
-        sides, why = put_sided(found, columns, torques, mapping)
+        sides, why = put_sided(by_channel, columns, torques, mapping)
         first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
-        return ColumnRoles(self.name, found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
+        return ColumnRoles(self.name, by_channel, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit friction, inertia and gravity along the motion, with two encoders what lies between them; and warm-up."""
         if (warm := warmed(file)) is None:
             return fit_along_motion(file, known)
-        own, found = warm
+        own, warming = warm
         try:
             result, after = fit_along_motion(file, known)
         except ValueError as error:
             remarks = (*file.remarks, f"not used along its motion: {error}")
             result, after = replace(own, estimates=(), checks=(), remarks=remarks), known
-        after, assumed = with_fall(after, found, own)
+        after, assumed = with_fall(after, warming, own)
         return replace(
             result,
             estimates=(*result.estimates, *own.estimates),
@@ -96,9 +96,9 @@ class Log(Kind):
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error on data held out."""
-        found = log_of(file, known)
-        unit = found.log.units[0]
-        return tuple(_ranked(each, unit) for each in fit_motion([found.log], found.drive))
+        prepared = log_of(file, known)
+        unit = prepared.log.units[0]
+        return tuple(_ranked(each, unit) for each in fit_motion([prepared.log], prepared.drive))
 
     def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
         """Compare the torque along the motion with that of a saved drive."""
@@ -171,23 +171,23 @@ def put_sided(
 
 def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]:
     """Return the motions, with the sides of two whose names contain none by their sizes; and what determines them."""
-    found, why = list(motions), list[str]()
+    sided, why = list(motions), list[str]()
     for quantity in ("angle", "speed"):
-        both = [column for column in found if column.channel.quantity == quantity]
+        both = [column for column in sided if column.channel.quantity == quantity]
         is_open = [column.channel.side is None for column in both]
         small, large = sorted(float(np.ptp(column.si)) for column in both) if len(both) == 2 else (0.0, 0.0)
         if len(both) == 2 and (all(is_open) or (any(is_open) and large > MIN_FACTOR_OF_SIDES * small > 0.0)):
             fast, slow, why_side = sides_of_angles(both)
             sides: tuple[tuple[Column, Side], ...] = ((fast, "input"), (slow, "output"))
             for column, side in sides:
-                found[found.index(column)] = replace(column, channel=column.channel._replace(side=side))
+                sided[sided.index(column)] = replace(column, channel=column.channel._replace(side=side))
             why.append(why_side)
         elif len(both) == 2 and any(is_open) and not all(is_open) and _are_apart(both):
             named, other = both if is_open[1] else both[::-1]
             of_other: Side = "output" if named.channel.side == "input" else "input"
-            found[found.index(other)] = replace(other, channel=other.channel._replace(side=of_other))
+            sided[sided.index(other)] = replace(other, channel=other.channel._replace(side=of_other))
             why.append(f"{other.name} is recorded with {named.name}, from which it differs: it is that of the {of_other}")
-    return found, why
+    return sided, why
 
 
 def _are_apart(both: Sequence[Column]) -> bool:

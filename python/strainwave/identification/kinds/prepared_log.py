@@ -178,16 +178,16 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
     Raises:
         ValueError: resistance or torque constant is neither given nor known of the set
     """
-    known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
-    if missing := [name for name, value in known.items() if value == 0.0]:
+    numbers = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
+    if missing := [name for name, value in numbers.items() if value == 0.0]:
         units, column = {"resistance": "Ohm, of the motor", "torque_constant": "N.m/A, of the motor"}, file.columns["voltage"]
         ways = [
             Answer("the motor is known", {"constants": dict.fromkeys(missing, 1.0)}, {name: units[name] for name in missing}),
             Answer("it asks an amplifier for a current", {"columns": {"current": column}, "units": {column: "A"}}),
         ]
         raise QuestionError("a voltage determines the torque of a motor that is known", ways)
-    induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
-    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
+    induced = numbers["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
+    return motor.DC(**numbers, back_emf=induced or numbers["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
 
 
 def _loaded(file: Recognised) -> Recording:

@@ -38,18 +38,18 @@ class RunFromRest(Kind):
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         """Return the channel of each column; an encoder is that of the motor."""
-        found = channels(
+        by_channel = channels(
             {
                 "time": measured(columns, "time"),
                 "command": commanded(columns, "angle") or commanded(columns, "voltage"),
                 "current": measured(columns, "current"),
             }
         )
-        if "command" not in found:
+        if "command" not in by_channel:
             raise QuestionError(f"{self.title} needs its command; it has {names_of(columns)}")
-        _, why = put_sided(found, columns, [], mapping if mapping.side else replace(mapping, side="input"))
+        _, why = put_sided(by_channel, columns, [], mapping if mapping.side else replace(mapping, side="input"))
         first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
-        return ColumnRoles(self.name, found, None, (first, *why))
+        return ColumnRoles(self.name, by_channel, None, (first, *why))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit what no better file determines, by simulating the drive."""
@@ -58,19 +58,19 @@ class RunFromRest(Kind):
         friction_known, torsion_known = (part in known.determined for part in ("friction_input", "stiffness"))
         drive = prepared(log, known.gear_set.drive, friction_known=friction_known)
         free = free_parameters(log, drive, friction_known=friction_known, torsion_known=torsion_known)
-        found = fit_log(log, drive, free)
-        whole = explained(found.fit, name)
-        kept = InfluenceOfKept.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
+        log_fit = fit_log(log, drive, free)
+        whole = explained(log_fit.fit, name)
+        kept = InfluenceOfKept.none(len(log_fit.fit.estimates)) if whole.failed else influence(log_fit.fit)
         if whole.failed:
-            whole = _with_cause(whole, found.fit, file, drive, free)
-        fitted = JudgedFit(found.fit, name, kept, not whole.failed, prefix="")
-        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), found.fit
+            whole = _with_cause(whole, log_fit.fit, file, drive, free)
+        fitted = JudgedFit(log_fit.fit, name, kept, not whole.failed, prefix="")
+        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), log_fit.fit
         if not whole.failed:
             fit, estimates = with_set_before(fit, estimates, known)
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
-            (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
-            pictures=pictures_of_channels(fit), held_out=_held_out(found), fit=fit,
+            (*file.remarks, *_remarks(recording, log, log_fit.fit, kept, known)), (whole,),
+            pictures=pictures_of_channels(fit), held_out=_held_out(log_fit), fit=fit,
         )  # fmt: skip
         if whole.failed:
             return result, known

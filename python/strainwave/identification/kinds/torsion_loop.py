@@ -144,10 +144,10 @@ class Torsion(Kind):
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return all springs and hysteresis laws by their error on data held out."""
-        found = rank_loop(TorsionLoop.of(file.recording, known.gear_set.gear), known.gear_set.gear)
+        ranking = rank_loop(TorsionLoop.of(file.recording, known.gear_set.gear), known.gear_set.gear)
         return tuple(
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
-            for each in found
+            for each in ranking
         )
 
 

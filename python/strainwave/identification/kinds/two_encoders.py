@@ -41,17 +41,17 @@ class TwoEncoders(Kind):
             raise QuestionError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
         fast, slow, why_side = sides_of_angles(angles)
         why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
-        found = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
-        return ColumnRoles(self.name, found, None, tuple(filter(None, (why, why_side))))
+        by_channel = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
+        return ColumnRoles(self.name, by_channel, None, tuple(filter(None, (why, why_side))))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
         given = file.constants.get("ratio")
-        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
+        errors = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
         name = file.path.name
-        remarks, pictures = (*file.remarks, *found.remarks), (picture_of_turn(found), Picture(curves_of_orders(found)))
-        result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)
-        return result, with_error(known, found, name)
+        remarks, pictures = (*file.remarks, *errors.remarks), (picture_of_turn(errors), Picture(curves_of_orders(errors)))
+        result = FileResult(name, file, "orders of the input", tuple(orders_of(errors)), remarks, pictures=pictures)
+        return result, with_error(known, errors, name)
 
 
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:

@@ -42,31 +42,31 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
         {"speed": "rad/s", "temperature": "K", effort: recording.unit(effort)},
     )
     try:
-        found = friction_over_temperature(series, effort)
+        warming = friction_over_temperature(series, effort)
     except ValueError:
         return None
-    fall, slope, level = found.fall, found.slope, found.friction
+    fall, slope, level = warming.fall, warming.slope, warming.friction
     sure = abs(fall.value) > MIN_CHANGE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
-    why = ONE_WAY_FALL if sure and found.one_way else why
+    why = ONE_WAY_FALL if sure and warming.one_way else why
     low, high = slope.interval(0.95)
     remarks: tuple[str, ...] = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
-        f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
+        f"{_celsius(warming.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
         f"with 95 % between {low:.3g} and {high:.3g}",
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
-    if found.one_way:
+    if warming.one_way:
         remarks = (*remarks, ONE_WAY_FALL)
     estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
-    curves = _curves(series, effort, found)
+    curves = _curves(series, effort, warming)
     means = curves[f"friction_of_{effort}"]
     left = Left(rms(means - curves["modelled"]), rms(means), level.unit, MAX_SHARE_OF_TORQUE)
     whole = error_left({"friction over the temperature": left}, file.path.name)
     return FileResult(
         file.path.name, file, "friction over the temperature", only_if_explained(estimates, whole), remarks, (whole,),
         pictures=(Picture(curves, "means"),),
-    ), found  # fmt: skip
+    ), warming  # fmt: skip
 
 
 def with_fall(known: GearSoFar, found: Warming, result: FileResult) -> tuple[GearSoFar, tuple[str, ...]]:

@@ -162,12 +162,12 @@ def _weights(own: Array, common: Array) -> Array:
     """Return weights of least variance that are not negative, of numbers with parts of their own and a part in common."""
     counted = np.ones(len(own), bool)
     while True:
-        found = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
-        if (found > 0.0).all():
+        weights = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
+        if (weights > 0.0).all():
             break
-        counted[np.flatnonzero(counted)[found <= 0.0]] = False
+        counted[np.flatnonzero(counted)[weights <= 0.0]] = False
     weight = np.zeros(len(own))
-    weight[counted] = found / found.sum()
+    weight[counted] = weights / weights.sum()
     return weight
 
 

@@ -156,13 +156,13 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     """Return the set with the load of a log; numbers that the log does not determine state so."""
     drive, own = drive_of(log), _loads_of(log)
     assert drive is not None
-    given = {} if log.recognised is None else log.recognised.constants
+    constants = {} if log.recognised is None else log.recognised.constants
     load: Any = drive.load
     sources = {}
     for path in own_paths("load", load):
         name = path.removeprefix("load.")
         estimate, before = own.get(path), getattr(whole.load, name, None)
-        if path == LOAD_INERTIA and "load_inertia" in given:
+        if path == LOAD_INERTIA and "load_inertia" in constants:
             sources[path] = Entry(f"given with {log.name}")
         elif estimate is not None and (estimate.state != "not identified" or before is None):
             sources[path] = source_of(estimate, log.name)
@@ -184,50 +184,52 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
 def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the load of logs at constant speed: their gravity, and an inertia that changes nothing there."""
     assert log.recognised is not None
-    given = log.recognised.constants
+    constants = log.recognised.constants
     shown = {each.estimate.path: each for each in parameters if each.estimate.path.startswith("load.gravity")}
-    rotor = (whole.gear.input_inertia + given.get("motor_inertia", 0.0)) * whole.gear.kinematics.ratio**2
-    inertia = given.get("load_inertia", max(MIN_LOAD_SHARE * rotor, MIN_INERTIA))
+    rotor = (whole.gear.input_inertia + constants.get("motor_inertia", 0.0)) * whole.gear.kinematics.ratio**2
+    inertia = constants.get("load_inertia", max(MIN_LOAD_SHARE * rotor, MIN_INERTIA))
     gravity = {path.removeprefix("load."): each.estimate.value for path, each in shown.items()}
     load: Any = loads.Pendulum(inertia=inertia, **gravity) if gravity else loads.Inertia(inertia=inertia)
-    why = f"given with {log.name}" if "load_inertia" in given else f"assumed: {log.name}, at constant speed, shows none"
+    why = f"given with {log.name}" if "load_inertia" in constants else f"assumed: {log.name}, at constant speed, shows none"
     sources = {LOAD_INERTIA: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
     return _with_part(whole, "load", load, sources)
 
 
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log; the source of its constant states if the log counts the other way."""
-    known = _with_motor_of(whole, log, parameters)
-    path = "motor.torque_constant" if "motor.torque_constant" in known.sources else MOTOR_INERTIA
-    entry, turned = known.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
+    with_motor = _with_motor_of(whole, log, parameters)
+    path = "motor.torque_constant" if "motor.torque_constant" in with_motor.sources else MOTOR_INERTIA
+    entry, turned = with_motor.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
     if not turned or OPPOSITE in entry.source:
-        return known
+        return with_motor
     stated = replace(entry, source=f"{entry.source}; in {one_line(log.name)} {turned}")
-    return known.replace(sources={**known.sources, path: stated})
+    return with_motor.replace(sources={**with_motor.sources, path: stated})
 
 
 def _with_motor_of(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
-    given = {} if log.recognised is None else log.recognised.constants
+    constants = {} if log.recognised is None else log.recognised.constants
     if whole.motor is not None:
         names = {field["name"] for field in whole.motor.fields}
         numbers = {"torque_constant": "torque_constant", "resistance": "resistance", "inertia": "motor_inertia"}
-        changed = {name: given[key] for name, key in numbers.items() if key in given and name in names}
+        changed = {name: constants[key] for name, key in numbers.items() if key in constants and name in names}
         sources = {path: entry for path, entry in whole.sources.items() if path.startswith("motor.")}
         sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in changed}
         return _with_part(whole, "motor", whole.motor.replace(**changed), sources)
     inertia, source = _motor_inertia(whole, log, parameters)
     fitted: Any = motor.TorqueSource()
-    if "torque_constant" in given:
+    if "torque_constant" in constants:
         of_fit = drive_of(log)
-        fitted = motor.CurrentSource(torque_constant=given["torque_constant"]) if of_fit is None else of_fit.motor
-    known = fitted.replace(inertia=inertia)
-    sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", known)}
-    sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
-    if "motor.back_emf" in sources and "torque_constant" in given:
+        fitted = motor.CurrentSource(torque_constant=constants["torque_constant"]) if of_fit is None else of_fit.motor
+    saved = fitted.replace(inertia=inertia)
+    sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", saved)}
+    sources |= {
+        f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in constants
+    }
+    if "motor.back_emf" in sources and "torque_constant" in constants:
         sources["motor.back_emf"] = Entry(f"torque constant given with {log.name}")
     sources[MOTOR_INERTIA] = source
-    return _with_part(whole, "motor", known, {path: sources[path] for path in own_paths("motor", known)})
+    return _with_part(whole, "motor", saved, {path: sources[path] for path in own_paths("motor", saved)})
 
 
 def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> tuple[float, Entry]:
@@ -319,7 +321,7 @@ def _identified(whole: GearSet, parameters: Sequence[CombinedParameter]) -> Iter
 
 def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], files: Sequence[FileResult]) -> Array:
     """Return the correlation of estimates by the fits of their files, shape (n, n); 0 between fits."""
-    found = np.eye(len(estimates))
+    correlation = np.eye(len(estimates))
     for file in files:
         for fit in file.fits:
             own, at = list[int](), list[int]()
@@ -329,8 +331,8 @@ def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], file
                     at.append(place)
             block = fit.correlation[np.ix_(at, at)]
             if own and np.isfinite(block).all():
-                found[np.ix_(own, own)] = block
-    return found
+                correlation[np.ix_(own, own)] = block
+    return correlation
 
 
 def _place(estimate: FileEstimate, fit: Fit) -> int | None:

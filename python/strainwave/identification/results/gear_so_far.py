@@ -87,7 +87,7 @@ class GearSoFar:
             name: of the file
         """
         states = {part: {each.state for each in estimates if is_of(each.path, {part})} for part in parts}
-        laws = {part: getattr(gear, part) for part, found in states.items() if found != {"not identified"}}
+        laws = {part: getattr(gear, part) for part, of_part in states.items() if of_part != {"not identified"}}
         entries = {each.path: source_of(each, name) for each in estimates}
         return self._with_laws(laws, entries, {each.path for each in estimates if not each.why}, name)
 

@@ -159,8 +159,8 @@ def _inseparable(fit: Fit, place: int) -> DeterminedSum | None:
     problem, x = solved_problem(fit)
     rows, (leads, _) = problem.information(x, problem.weights(x)), problem.leads()
     paths = [fit.estimates[leads.index(unknown)].path for unknown in range(len(x))]
-    found = sum_by_information(rows.T @ rows, leads[place], x, paths, fit.estimates[place].unit)
-    return None if found is None or len(found.paths) == 1 else found
+    determined = sum_by_information(rows.T @ rows, leads[place], x, paths, fit.estimates[place].unit)
+    return None if determined is None or len(determined.paths) == 1 else determined
 
 
 def _is_phase(estimate: Estimate) -> bool:

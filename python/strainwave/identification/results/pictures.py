@@ -150,10 +150,10 @@ def _sigmas(fit: Fit) -> Array:
     part, own = fit.parts[0], {each.path: place for place, each in enumerate(fit.estimates)}
     zeros = [each.name for each in part.experiment.nuisances]
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
-    known = [path for path in own if path in numbers and path not in zeros]
+    free = [path for path in own if path in numbers and path not in zeros]
     nuisances = np.array([fit.estimates[own[name]].value for name in zeros])
-    _, slopes = part.experiment.predict(part.model, [numbers[path] for path in known], nuisances)
-    places = [own[path] for path in (*known, *zeros)]
+    _, slopes = part.experiment.predict(part.model, [numbers[path] for path in free], nuisances)
+    places = [own[path] for path in (*free, *zeros)]
     covariance = fit.covariance[np.ix_(places, places)]
     with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
         variance: Array = np.einsum("icn,ij,jcn->cn", slopes, covariance, slopes, optimize=True)

@@ -324,8 +324,8 @@ def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direc
 def _viscous_numbers(gear: Any) -> dict[str, float]:
     """Return the numbers of a gear that its viscous friction grows with, by path."""
     names = ("viscous", "viscous_torque")
-    found = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in FRICTION_PARTS}
-    return {path: value for path, value in found.items() if path.rpartition(".")[2] in names and value != 0.0}
+    of_friction = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in FRICTION_PARTS}
+    return {path: value for path, value in of_friction.items() if path.rpartition(".")[2] in names and value != 0.0}
 
 
 def changes_of(

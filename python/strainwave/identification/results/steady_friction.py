@@ -78,8 +78,8 @@ def friction_at_speeds(
         freedom = len(left) - len(present)
         scatter = student(ONE_SIGMA, freedom) ** 2 * float(left @ left) / freedom if freedom > 0 else 0.0
         variance = scatter * float(weights @ weights) if covariance is None else float(weights @ covariance @ weights)
-        found = friction_at(mean, float(weights @ torque), float(np.sqrt(variance)), side=side)
-        estimates.append(found if found.sigma else replace(found, sigma=np.inf, why="one number shows no scatter"))
+        estimate = friction_at(mean, float(weights @ torque), float(np.sqrt(variance)), side=side)
+        estimates.append(estimate if estimate.sigma else replace(estimate, sigma=np.inf, why="one number shows no scatter"))
     count = different_speeds(speed)
     few = (
         f"{count} different {'speed' if count == 1 else 'speeds'}, slow or fast, one way or the other, determine friction "
@@ -118,9 +118,9 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
     torque, slopes = table.predict(gear, [numbers[plain[place]] for place in used], np.zeros(0))
     gradient = slopes[:, 0, 0]
     acting = gradient != 0.0
-    known = np.array(used, int)[acting]
+    places = np.array(used, int)[acting]
     with np.errstate(invalid="ignore"):  # of infinite variances
-        variance = float(gradient[acting] @ covariance[np.ix_(known, known)] @ gradient[acting])
+        variance = float(gradient[acting] @ covariance[np.ix_(places, places)] @ gradient[acting])
     return friction_at(speed, float(torque[0, 0]), float(np.sqrt(variance)) if variance >= 0.0 else np.inf)
 
 
