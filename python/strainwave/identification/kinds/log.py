@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import fit_motion
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.kinds.along_motion import fit_along_motion
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
@@ -97,8 +96,13 @@ class Log(Kind):
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error on data held out."""
         prepared = log_of(file, known)
-        unit = prepared.log.units[0]
-        return tuple(_ranked(each, unit) for each in fit_motion([prepared.log], prepared.drive))
+        ranked = []
+        for each in fit_motion([prepared.log], prepared.drive):
+            correlation = max(correlation_length(part.residuals[0]) for part in each.fit.parts)
+            nuisances = sum(len(part.experiment.nuisances) for part in each.fit.parts)
+            fitted = len(each.fit.estimates) - nuisances - len(each.model.ties)
+            ranked.append(Ranked(each.name, fitted, each.error, np.nan, prepared.log.units[0], correlation))
+        return tuple(ranked)
 
     def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
         """Compare the torque along the motion with that of a saved drive."""
@@ -134,13 +138,6 @@ def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
                 Answer("a voltage of the motor", of_motor, {"resistance": "Ohm", "torque_constant": "N.m/A, of the motor"}),
             ]
             raise QuestionError(f"{column.name} may be a torque, a current or a voltage", ways)
-
-
-def _ranked(each: MotionCandidate, unit: str) -> Ranked:
-    correlation = max(correlation_length(part.residuals[0]) for part in each.fit.parts)
-    nuisances = sum(len(part.experiment.nuisances) for part in each.fit.parts)
-    fitted = len(each.fit.estimates) - nuisances - len(each.model.ties)
-    return Ranked(each.name, fitted, each.error, np.nan, unit, correlation)
 
 
 # ---- Motions and torques with their sides ----------------------------------------------------------------------------

@@ -225,7 +225,9 @@ class _PredictedLog(ComparedByFields):
         asked = [replace(each, effect=band.filtered(each.effect)) for each in directions]
         left, by_numbers = band.filtered(self.log.force - self.at(self.drive)), band.filtered(slopes.T).T
         _, explained = changes_of(left, asked, by_numbers, covariance)
-        changes, _ = changes_of(left, asked, by_numbers, covariance, _by_speed(left - explained, speed))
+        parts = np.array_split((left - explained)[np.argsort(speed, kind="stable")], SPEED_BINS)
+        by_speed = rms(np.array([float(np.mean(part)) for part in parts if len(part)]))  # another motion weighs it otherwise
+        changes, _ = changes_of(left, asked, by_numbers, covariance, by_speed)
         return changes
 
     def _directions(self) -> Iterator[Direction]:
@@ -322,9 +324,3 @@ def _explained(values: Mapping[str, float], directions: Sequence[Direction]) -> 
         for name in (DRY, VISCOUS) if whole == FRICTION else (whole,):
             total += (value - parts[name].start) * parts[name].effect
     return total
-
-
-def _by_speed(left: Array, speed: Array) -> float:
-    """Return the root mean square of what is left on average at each speed: another motion weighs it otherwise."""
-    parts = np.array_split(left[np.argsort(speed, kind="stable")], SPEED_BINS)
-    return rms(np.array([float(np.mean(part)) for part in parts if len(part)]))

@@ -26,7 +26,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import ColumnRoles, measured, needed
 from strainwave.identification.reading.sides import pair
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit, with_set_before
 from strainwave.identification.results.pictures import Picture, curves_of
@@ -94,7 +94,11 @@ class Torsion(Kind):
         if side == "output" and (stiffness := _series_stiffness(angle.si, torque.si)):
             torque = replace(torque, si=float(np.copysign(1.0, stiffness)) * torque.si)
             remarks += (_computed(angle, torque, stiffness),)
-            remarks += tuple(_why_unused(current) for current in measured(columns, "current"))
+            remarks += tuple(
+                f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for "
+                "the friction of the gear write time, the angle of the motor and the current to a file of their own"
+                for current in measured(columns, "current")
+            )
         return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
@@ -131,7 +135,14 @@ class Torsion(Kind):
         )  # fmt: skip
         if in_series:
             assumed = {"series stiffness": f"{abs(in_series):.4g} N·m/rad, which the recorder assumed and did not measure"}
-            return replace(result, estimates=tuple(_in_series(estimates)), unchecked=assumed), known
+            unmeasured = tuple(
+                replace(
+                    each, path=each.path.replace("gear.stiffness.k", SERIES), sigma=np.inf, why=ASSUMED_BY_RECORDER,
+                    in_combination=False,
+                )
+                for each in estimates
+            )  # fmt: skip
+            return replace(result, estimates=unmeasured, unchecked=assumed), known
         if whole.failed or known.knows_better("stiffness", estimates):
             return result, known
         # a loop at the input has friction inside, and an error of the table of friction becomes hysteresis
@@ -151,14 +162,6 @@ class Torsion(Kind):
         )
 
 
-def _why_unused(current: Column) -> str:
-    """Return why a current beside a spring behind the gear is not used."""
-    return (
-        f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for the "
-        "friction of the gear write time, the angle of the motor and the current to a file of their own"
-    )
-
-
 def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
     """True for a spring that a rig loads, with time: a log has more rows in a second, turns, or is softer than any gear."""
     times, angles, torques = (measured(columns, quantity) for quantity in ("time", "angle", "torque"))
@@ -167,7 +170,12 @@ def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
     angle, torque = angles[0].si, torques[0].si
     if _exceeds_twist(angles[0], mapping):
         return False
-    return in_steps(times[0].si, angle, torque) or (_is_spring(angle, torque) and _is_as_stiff_as_a_gear(angle, torque))
+    if in_steps(times[0].si, angle, torque):
+        return True
+    if not _is_spring(angle, torque) or np.ptp(angle) >= MAX_TWIST:
+        return False
+    # weight and inertia of no joint are as stiff as a gear
+    return bool(np.cov(angle, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(angle))
 
 
 def is_series_spring(columns: Sequence[Column]) -> bool:
@@ -218,11 +226,6 @@ def _is_spring(angle: Array, torque: Array) -> bool:
     return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
 
 
-def _is_as_stiff_as_a_gear(twist: Array, torque: Array) -> bool:
-    """True if a torque grows with an angle as at the output of a gear: weight and inertia of no joint are as stiff."""
-    return bool(np.cov(twist, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(twist) and np.ptp(twist) < MAX_TWIST)
-
-
 def _why_output(angle: Column, torque: Column) -> str:
     """Return why a loop is one of the output, if its columns contain no side.
 
@@ -248,13 +251,6 @@ def _computed(twist: Column, torque: Column, stiffness: float) -> str:
         "on a lever, a load cell, or the current of the motor in slow motion both ways does. The gear keeps its own spring, "
         "which is far stiffer: give a drive whose angles are those on both sides of the spring this stiffness instead"
     )
-
-
-def _in_series(estimates: Sequence[FileEstimate]) -> Iterator[FileEstimate]:
-    """Yield the estimates of a spring behind the gear: nothing measured its stiffness, or what its torque leaves."""
-    for each in estimates:
-        path = each.path.replace("gear.stiffness.k", SERIES)
-        yield replace(each, path=path, sigma=np.inf, why=ASSUMED_BY_RECORDER, in_combination=False)
 
 
 def _place(loop: TorsionLoop) -> str:

@@ -42,6 +42,7 @@ MIN_SLIDING_SAMPLES = 50  # of sliding, from which changes are determined
 DRY, VISCOUS, FRICTION, ZERO, DELAY = "dry friction", "viscous friction", "friction", "zero", "delay"
 INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
 ZERO_OF_ANGLE = "zero of the angle"
+VISCOUS_NUMBERS = ("viscous", "viscous_torque")  # with which viscous friction grows
 FRICTION_PARTS = ("friction_input", "friction_mesh", "friction_output")
 
 
@@ -314,18 +315,14 @@ def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direc
     """
     whole = at(gear)
     total = whole - at(gear.replace(**dict.fromkeys(FRICTION_PARTS, FRICTIONLESS)))
-    numbers = _viscous_numbers(gear)
+    numbers = {
+        path: each.value for path, each in every(gear).items()
+        if path.partition(".")[0] in FRICTION_PARTS and path.rpartition(".")[2] in VISCOUS_NUMBERS and each.value != 0.0
+    }  # fmt: skip
     halved = at(gear.replace({path: 0.5 * value for path, value in numbers.items()})) if numbers else whole
     viscous = 2.0 * (whole - halved)
     yield Direction(DRY, "1", 1.0, total - viscous)
     yield Direction(VISCOUS, "1", 1.0, viscous)
-
-
-def _viscous_numbers(gear: Any) -> dict[str, float]:
-    """Return the numbers of a gear that its viscous friction grows with, by path."""
-    names = ("viscous", "viscous_torque")
-    of_friction = {path: each.value for path, each in every(gear).items() if path.partition(".")[0] in FRICTION_PARTS}
-    return {path: value for path, value in of_friction.items() if path.rpartition(".")[2] in names and value != 0.0}
 
 
 def changes_of(
@@ -354,7 +351,9 @@ def changes_of(
         by_laws = coherent**2 * (_blocks(np.abs(inverse)) ** 2).sum(axis=0)
         slopes = inverse @ by_numbers
         by_saved = np.einsum("kp,pq,kq->k", slopes, covariance, slopes)
-        sigma = np.sqrt(_scatter(inverse, left - explained, len(asked)) + by_laws + by_saved)
+        sums = _blocks(inverse * (left - explained))
+        by_scatter = (sums**2).sum(axis=0) * len(sums) / max(len(sums) - len(asked), 1)
+        sigma = np.sqrt(by_scatter + by_laws + by_saved)
         excess = sigma / np.array([each.max_sigma for each in asked])
         if excess.max() <= 1.0:
             break
@@ -380,12 +379,6 @@ def _blocks(values: Array) -> Array:
     return np.array([part.sum(axis=1) for part in np.array_split(values, blocks, axis=1)])
 
 
-def _scatter(inverse: Array, left: Array, unknowns: int) -> Array:
-    """Return the variances of estimates by the scatter of blocks, shape (k,)."""
-    sums = _blocks(inverse * left)
-    return np.asarray((sums**2).sum(axis=0) * len(sums) / max(len(sums) - unknowns, 1))
-
-
 def slopes_by_numbers(
     gear_set: GearSet, model: Any, at: Callable[[Any], Array], beginnings: str | tuple[str, ...]
 ) -> tuple[Array, Array]:
@@ -397,20 +390,15 @@ def slopes_by_numbers(
         at: returns the prediction of such a model, shape (n,)
         beginnings: of the paths of numbers that the channel depends on
     """
-    here, known = at(model), gear_set.covariance
-    own = None if known is None else known.among([path for path in known.paths if path.startswith(beginnings)])
+    here, saved = at(model), gear_set.covariance
+    own = None if saved is None else saved.among([path for path in saved.paths if path.startswith(beginnings)])
     if own is None:
         return np.zeros((len(here), 0)), np.zeros((0, 0))
     steps = STEP_SIGMA * np.sqrt(np.diag(own.array))
-    prefix = "" if isinstance(model, Drive) else "gear."
-    slopes = [_slope(model, path.removeprefix(prefix), step, here, at) for path, step in zip(own.paths, steps, strict=True)]
-    return np.stack(slopes, axis=1), own.array
-
-
-def _slope(model: Any, path: str, step: float, here: Array, at: Callable[[Any], Array]) -> Array:
-    """Return the derivative of a channel by one number, shape (n,); 0 by one that the model lacks."""
-    if path not in (numbers := every(model)):
-        return np.zeros_like(here)
-    number = numbers[path]
-    move = step if number.value + step < number.high else -step
-    return np.asarray((at(model.replace({path: number.value + move})) - here) / move)
+    prefix, numbers = "" if isinstance(model, Drive) else "gear.", every(model)
+    slopes = np.zeros((len(here), len(steps)))  # of a number that the model lacks
+    for place, (path, step) in enumerate(zip(own.paths, steps, strict=True)):
+        if (number := numbers.get(path := path.removeprefix(prefix))) is not None:
+            move = step if number.value + step < number.high else -step
+            slopes[:, place] = (at(model.replace({path: number.value + move})) - here) / move
+    return slopes, own.array
