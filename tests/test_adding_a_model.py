@@ -184,7 +184,7 @@ ELSEWHERE = {
     },
     "Cyclic": {
         "parameter_drive.hpp": BOUND_TO_ANY,
-        "identification/kinds/constant_speed_runs.py": "waves found over the angle, around the friction that is known",
+        "identification/kinds/constant_speed.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
         "parameter_drive.hpp": BOUND_TO_ANY,

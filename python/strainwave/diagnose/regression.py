@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave.diagnose.motion import SampledMotion
 from strainwave.orders.smooth_part import MIN_GRAVITY_SPAN, MIN_SENSE_SHARE, floor_without, orthonormal
-from strainwave.statistics.floor import Floor
+from strainwave.statistics.spectrum import Floor
 
 Array = NDArray[np.float64]
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
 from strainwave.orders.smooth_part import Moving, Shaft
 from strainwave.presentation import Presented
-from strainwave.statistics.floor import Floor, floor_under
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.spectrum import Floor, floor_under
 
 Array = NDArray[np.float64]
 Kind = Literal["order", "time", "joint", "either"]

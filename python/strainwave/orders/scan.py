@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.orders.smooth_part import FittedColumns, Shaft
-from strainwave.statistics.floor import Floor
+from strainwave.statistics.spectrum import Floor
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -42,6 +42,7 @@ from strainwave.parameters import plain
 from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.results.residual_spectrum import amplitude_spectra
+from strainwave.identification.results.pictures import amplitude_spectra, curves_of
 
 GEAR = sw.load("hfuc-25-100")
 SPEED = np.linspace(2.0, 200.0, 30)
@@ -16,6 +16,10 @@ DRIVE = sw.Drive(
     control=sw.control.PID(proportional=2.0, derivative=0.05),
     load=sw.loads.Inertia(inertia=0.5),
 )
+COULOMB_GEAR = sw.load("hfuc-25-100").replace(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
+FREE = ["friction_input.coulomb", "friction_input.viscous"]
+BOTH_WAYS = np.array([-200.0, -80.0, -20.0, -5.0, 4.0, 15.0, 60.0, 120.0, 190.0, 250.0])
+TORQUE_NOISE = 1e-3
 
 
 def table(scale: float = 1.0) -> sw.Recording:
@@ -116,3 +120,49 @@ def test_a_prediction_is_drawn_with_its_error() -> None:
     assert np.sort(np.asarray(whole.lines[0].get_ydata())) == pytest.approx(np.sort(found.curves["torque"]))
     assert whole.get_title(loc="left") == "torque [N·m]"
     assert left.get_xlabel() == "input speed [rad/s]"
+
+
+def noisy_table(seed: int) -> sw.Recording:
+    torque = (
+        0.05 * np.sign(BOTH_WAYS) + 3e-4 * BOTH_WAYS + TORQUE_NOISE * np.random.default_rng(seed).normal(size=len(BOTH_WAYS))
+    )
+    return sw.Recording({"speed": BOTH_WAYS, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+
+
+def test_a_line_is_as_uncertain_as_its_numbers_and_their_covariance_make_it() -> None:
+    fit = sw.fit(COULOMB_GEAR, noisy_table(1), FREE)
+    curves = curves_of(fit)
+    by_hand = np.stack([np.sign(BOTH_WAYS), BOTH_WAYS], axis=1)
+    variance = np.array([row @ fit.covariance @ row for row in by_hand])
+    np.testing.assert_allclose(curves["sigma"], np.sqrt(variance), rtol=1e-9)
+    np.testing.assert_allclose(curves["modelled"], by_hand @ [each.value for each in fit.estimates], rtol=1e-9)
+    np.testing.assert_array_equal(curves["torque"], noisy_table(1)["torque"])
+    assert curves.names[:2] == ("speed", "torque")
+    assert curves.unit("sigma") == "N.m"
+
+
+def test_what_is_modelled_scatters_as_much_as_it_says_when_the_table_is_measured_again() -> None:
+    every = [curves_of(sw.fit(COULOMB_GEAR, noisy_table(seed), FREE)) for seed in range(60)]
+    scatter = np.std([each["modelled"] for each in every], axis=0)
+    told = np.sqrt(np.mean([each["sigma"] ** 2 for each in every], axis=0))
+    assert np.all(scatter < 1.5 * told)
+    assert np.all(scatter > 0.6 * told)
+
+
+def test_a_number_that_follows_another_moves_what_is_predicted_with_it() -> None:
+    ties = {"friction_input.viscous": ("friction_input.coulomb", 6e-3)}
+    fit = sw.fit(COULOMB_GEAR, noisy_table(2), FREE[:1], ties=ties)
+    sigma = fit.estimates[0].sigma * np.abs(np.sign(BOTH_WAYS) + 6e-3 * BOTH_WAYS)
+    np.testing.assert_allclose(curves_of(fit)["sigma"], sigma, rtol=1e-9)
+
+
+def test_what_the_data_do_not_tell_leaves_no_band() -> None:
+    still = COULOMB_GEAR.replace(friction_output=sw.friction.Coulomb(coulomb=1.0, breakaway=1.0, viscous=0.0))
+    fit = sw.fit(still, noisy_table(3), [*FREE, "friction_output.viscous"])
+    assert "sigma" not in curves_of(fit).names
+
+
+def test_what_took_no_part_is_marked() -> None:
+    training = BOTH_WAYS > 0.0
+    marked = curves_of(sw.fit(COULOMB_GEAR, noisy_table(4), FREE, training=training))["held_out"]
+    np.testing.assert_array_equal(marked == 0.0, training)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strainwave.statistics.shape import shape
+from strainwave.statistics.residuals import shape
 
 TIME = np.linspace(0.0, 30.0, 3000)
 ANGLE = np.mod(40.0 * np.sin(TIME), 2.0 * np.pi)

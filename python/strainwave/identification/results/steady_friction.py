@@ -8,18 +8,20 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core
+from strainwave import Drive, _core
 from strainwave._core import Gear
-from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.identification.candidates.elastic import transmitted_torque
+from strainwave.identification.experiments.friction_table import FRICTIONLESS, FrictionTable
+from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, FileResult, is_uncertain
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 
 MIN_SPEEDS = 4  # different ones, that determine a law of friction and validate it
-PATH = "steady_friction"
+STEADY_FRICTION = "steady_friction"
 AT_SPEEDS = "friction at each speed"  # the model of a measurement of fewer speeds
-PLACES = ("friction_input.", "friction_mesh.")  # whose numbers act on steady friction
+STEADY_FRICTION_PARTS = ("friction_input.", "friction_mesh.")  # whose numbers act on steady friction
 
 
 def friction_at(speed: float, value: float, sigma: float, *, side: str = "input") -> FileEstimate:
@@ -29,7 +31,7 @@ def friction_at(speed: float, value: float, sigma: float, *, side: str = "input"
     steady_friction (at 0.412 rad/s of the output)
     """
     why = TOO_UNCERTAIN if is_uncertain(value, sigma) else ""
-    return FileEstimate(PATH, "N.m", value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
+    return FileEstimate(STEADY_FRICTION, "N.m", value, sigma, f"at {abs(speed):.3g} rad/s of the {side}", why)
 
 
 def different_speeds(speed: Array) -> int:
@@ -76,8 +78,8 @@ def friction_at_speeds(
         freedom = len(left) - len(present)
         scatter = student(ONE_SIGMA, freedom) ** 2 * float(left @ left) / freedom if freedom > 0 else 0.0
         variance = scatter * float(weights @ weights) if covariance is None else float(weights @ covariance @ weights)
-        found = friction_at(mean, float(weights @ torque), float(np.sqrt(variance)), side=side)
-        estimates.append(found if found.sigma else replace(found, sigma=np.inf, why="one number shows no scatter"))
+        estimate = friction_at(mean, float(weights @ torque), float(np.sqrt(variance)), side=side)
+        estimates.append(estimate if estimate.sigma else replace(estimate, sigma=np.inf, why="one number shows no scatter"))
     count = different_speeds(speed)
     few = (
         f"{count} different {'speed' if count == 1 else 'speeds'}, slow or fast, one way or the other, determine friction "
@@ -111,14 +113,14 @@ def steady_friction_at(gear: Gear, paths: Sequence[str], covariance: Array, spee
     """
     plain = [path.removeprefix("gear.") for path in paths]
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(gear))}
-    used = [place for place, path in enumerate(plain) if path.startswith(PLACES) and path in numbers]
+    used = [place for place, path in enumerate(plain) if path.startswith(STEADY_FRICTION_PARTS) and path in numbers]
     table = FrictionTable(np.array([abs(speed)]), np.zeros(1), load=np.array([load]))
     torque, slopes = table.predict(gear, [numbers[plain[place]] for place in used], np.zeros(0))
     gradient = slopes[:, 0, 0]
     acting = gradient != 0.0
-    known = np.array(used, int)[acting]
+    places = np.array(used, int)[acting]
     with np.errstate(invalid="ignore"):  # of infinite variances
-        variance = float(gradient[acting] @ covariance[np.ix_(known, known)] @ gradient[acting])
+        variance = float(gradient[acting] @ covariance[np.ix_(places, places)] @ gradient[acting])
     return friction_at(speed, float(torque[0, 0]), float(np.sqrt(variance)) if variance >= 0.0 else np.inf)
 
 
@@ -131,3 +133,53 @@ def best_known_friction(gear: Gear, paths: Sequence[str], covariance: Array, spe
     """
     tried = [steady_friction_at(gear, paths, covariance, speed) for speed in dict.fromkeys(map(abs, speeds)) if speed > 0.0]
     return min(tried, key=lambda each: each.sigma / abs(each.value) if each.value else np.inf)
+
+
+# ---- By the fit of a file --------------------------------------------------------------------------------------------
+
+
+def measured_speeds(file: FileResult) -> Array:
+    """Return the sizes of the speeds at which a file shows steady friction, of the input [rad/s]; empty if it shows none."""
+    experiment = None if file.fit is None else file.fit.parts[0].experiment
+    if isinstance(experiment, FrictionTable):
+        return np.abs(experiment.speed)
+    if isinstance(experiment, MotionLog):
+        speed = np.abs(experiment.motion.speed[experiment.motion.rows])
+        return speed[speed > 0.0]
+    return np.zeros(0)
+
+
+def mean_load(file: FileResult) -> float:
+    """Return the mean size of the torque that the input transmitted in a file that has speeds [N.m]; 0 if it is not known."""
+    assert file.fit is not None
+    experiment, model = file.fit.parts[0].experiment, file.fit.parts[0].model
+    if isinstance(experiment, FrictionTable):
+        return 0.0 if experiment.load is None else float(np.mean(np.abs(experiment.load)))
+    if not isinstance(experiment, MotionLog) or not isinstance(model, Drive):
+        return 0.0
+    torque = transmitted_torque(experiment, model)[experiment.motion.rows]
+    return float(np.mean(np.abs(torque))) / abs(model.gear.kinematics.ratio)
+
+
+def has_loss(file: FileResult) -> bool:
+    """True if the law of a file has a loss under load."""
+    return file.fit is not None and file.fit.gear.friction_mesh != FRICTIONLESS
+
+
+def friction_of(file: FileResult, speed: float, load: float) -> FileEstimate:
+    """Return the steady friction by a file that has speeds, with the standard deviations of its estimates.
+
+    Args:
+        file: the file
+        speed: of the input [rad/s]
+        load: torque that the input transmits [N.m]
+    """
+    fit, by_path = file.fit, {each.path: each for each in file.estimates}
+    assert fit is not None
+    prefix = "" if isinstance(fit.model, Drive) else "gear."
+    own = [by_path.get(prefix + each.path) for each in fit.estimates]
+    sigma = np.array([free.sigma if each is None else each.own for each, free in zip(own, fit.estimates, strict=True)])
+    with np.errstate(invalid="ignore"):  # what a file does not determine has no finite standard deviation, nor has the result
+        covariance = fit.correlation * np.outer(sigma, sigma)
+    common = max((each.common / abs(each.value) for each in own if each is not None and each.value), default=0.0)
+    return steady_friction_at(fit.gear, [each.path for each in fit.estimates], covariance, speed, load).resting_on(common)

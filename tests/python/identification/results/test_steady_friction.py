@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.identify import identify
-from strainwave.identification.results.determined import best_known_friction, friction_at_speeds, steady_friction_at
+from strainwave.identification.results.steady_friction import best_known_friction, friction_at_speeds, steady_friction_at
 
 START = "csg-20-100"
 COULOMB, VISCOUS = 0.05, 3e-4

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.identify import Identified
+from strainwave.identification.results.combined_parameter import LOAD_WITH_MOTOR, MOTOR_WITHOUT_LOAD
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.motor_inertia import APART, TOGETHER
 
 from tests.python.identification.candidates.test_elastic import TRUTH, run
 
@@ -49,7 +49,7 @@ def test_two_encoders_separate_motor_and_load_and_the_gear_file_has_what_is_prin
     both, later = of_file(found, 0), of_file(found, 1)
     for estimate, truth in ((both["motor.inertia"], MOTOR), (both["load.inertia"], LOAD), (later["load.inertia"], LOAD)):
         assert abs(estimate.value - truth) < 4.0 * estimate.sigma < 0.4 * truth
-    assert any(each.startswith(APART) for each in found.files[0].remarks)
+    assert any(each.startswith(MOTOR_WITHOUT_LOAD) for each in found.files[0].remarks)
     assert "the inertia of the motor is that of both.csv, and load.inertia is without it" in found.files[1].remarks
     saved, sources = found.gear_set, found.gear_set.sources
     for path, value in (("motor.inertia", saved.motor.inertia), ("load.inertia", saved.load.inertia)):
@@ -67,7 +67,7 @@ def test_one_encoder_determines_both_together(folder: Path) -> None:
     found = identified(folder, "later.csv")
     (load,) = (each.estimate for each in found.parameters if each.estimate.path == "load.inertia")
     assert abs(load.value - LOAD - MOTOR * 50.0**2) < 4.0 * load.sigma
-    assert TOGETHER in found.files[0].remarks
+    assert LOAD_WITH_MOTOR in found.files[0].remarks
     assert found.gear_set.load.inertia == load.value
     assert found.gear_set.motor.inertia == 0.0
 
