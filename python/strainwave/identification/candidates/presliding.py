@@ -24,7 +24,6 @@ from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.statistics.covariance import covariance_of
 from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.statistics.scale import ONE_SIGMA, noise_sigma, student
-from strainwave.statistics.student import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 

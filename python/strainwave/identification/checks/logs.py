@@ -20,11 +20,9 @@ from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
 from strainwave.identification.reading.motion import MIN_EXPLAINED, PARTS_OF_RECORD, slopes_and_speeds, speed_per_slope
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.slopes import speed_per_slope
 from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, Check, HeldOut, is_uncertain
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED, HeldOut
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, HeldOut, is_uncertain
 from strainwave.messages import as_option, listed
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.shaft_pair import Ratio
@@ -468,7 +466,7 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
     sign = np.sign(speed)
     friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
     series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])
-    columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
+    columns = motion.filtered(late(series, delay, motion.step)[0] if delay else series).T
     measured = log.measured[0]
     return np.asarray((measured - columns @ solved(columns, measured)) ** 2)
 

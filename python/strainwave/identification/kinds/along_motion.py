@@ -15,13 +15,8 @@ from strainwave.identification.candidates.motion import bands, fit_motion, prior
 from strainwave.identification.candidates.motion_candidate import (
     SHARE_OF_UNKNOWN_ROTOR,
     MotionCandidate,
-    confirmed,
     inertia_at_input,
-    other_laws,
-    refit,
     slopes_by_rotor,
-    spread_by_blocks,
-    spread_by_models,
     with_rotor,
 )
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding

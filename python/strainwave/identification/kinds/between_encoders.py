@@ -20,7 +20,6 @@ from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
 from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.file_result import (
     GRAVITY_PATH,

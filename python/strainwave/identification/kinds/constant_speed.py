@@ -32,15 +32,13 @@ from strainwave.identification.reading.motions import stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, channels, measured, pair
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED, pair
+from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
 from strainwave.identification.results.determined import MIN_SPEEDS
 from strainwave.identification.results.file_result import MAX_UNEXPLAINED, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio, with_torque
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
 from strainwave.identification.results.identifiability import with_friction_at
 from strainwave.identification.results.pictures import Picture
-from strainwave.identification.results.ratio import with_ratio
-from strainwave.identification.results.steady_friction import AT_SPEEDS, MIN_SPEEDS, different_speeds, friction_at_speeds
+from strainwave.identification.results.steady_friction import AT_SPEEDS, different_speeds, friction_at_speeds
 from strainwave.messages import listed
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.residuals import rms

@@ -27,7 +27,6 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column
 from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut, Picture
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.pictures import Picture
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import correlation_length
 from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
