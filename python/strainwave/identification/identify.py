@@ -26,10 +26,16 @@ from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.joints import check_one_joint
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
-from strainwave.identification.reading.source import BAG_FILE, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.reading.source import (
+    BAG_FILE,
+    Measurement,
+    MeasurementFile,
+    MeasurementFiles,
+    measurement_files,
+    other_format,
+)
 from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine, without_motor
 from strainwave.identification.results.drive import drive_set, name_of_files

@@ -36,12 +36,12 @@ from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MIN_
 from strainwave.identification.fitting.fit import Fit, fit, problem_of, solved_problem
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import HeldOut
 from strainwave.identification.results.steady_friction import STEADY_FRICTION
 from strainwave.parameters import plain
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

@@ -14,15 +14,14 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.sizes import MISTAKEN
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
+from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.reading.motion import MIN_EXPLAINED, PARTS_OF_RECORD, slopes_and_speeds, speed_per_slope
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
+from strainwave.identification.reading.units import MAX_JOINT_ANGLE
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, HeldOut, is_uncertain
+from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, Check, HeldOut, is_uncertain
 from strainwave.messages import as_option, listed
 from strainwave.orders.comb import RATIOS
 from strainwave.orders.shaft_pair import Ratio

@@ -9,14 +9,18 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
 from strainwave.identification.candidates.motion_candidate import (
     SHARE_OF_UNKNOWN_ROTOR,
     MotionCandidate,
+    confirmed,
     inertia_at_input,
+    other_laws,
+    refit,
     slopes_by_rotor,
+    spread_by_blocks,
+    spread_by_models,
     with_rotor,
 )
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding

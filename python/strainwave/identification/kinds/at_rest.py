@@ -11,7 +11,7 @@ from strainwave import friction
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
 from strainwave.identification.checks.sizes import MIN_RATIO
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity

@@ -19,9 +19,15 @@ from strainwave.identification.kinds.warm_up import warmed, with_fall
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of, put
-from strainwave.identification.reading.sides import (
+from strainwave.identification.reading.roles import (
     MIN_FACTOR_OF_SIDES,
+    Column,
+    ColumnRoles,
+    channels,
+    commanded,
+    measured,
+    names_of,
+    put,
     side_of_motion,
     side_of_torque,
     sides_of_angles,

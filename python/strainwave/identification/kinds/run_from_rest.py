@@ -16,15 +16,13 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import InfluenceOfKept, influence
 from strainwave.identification.kinds.kind import Kind, exceeded, thinned, unused
 from strainwave.identification.kinds.log import put_sided
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import pictures_of_channels
-from strainwave.identification.results.file_result import FileResult, HeldOut
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit, with_set_before
+from strainwave.identification.results.pictures import pictures_of_channels
 from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
 
