@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.rig.vision.angle import look
+from strainwave.rig.vision.frame import look
 from strainwave.rig.vision.image import Image, read_image
 from strainwave.rig.vision.marker import Marker, find_markers
 

@@ -16,7 +16,7 @@ from strainwave.identification.kinds.torsion_loop import in_steps
 from strainwave.rig.analysis.analysis import LoopAnalysis
 from strainwave.rig.loop import COLUMNS, Loop
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.rig.vision.angle import Angles
+from strainwave.rig.vision.follow import Angles
 
 MARKER_COLUMNS = {
     "x": "px",

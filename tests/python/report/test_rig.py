@@ -26,7 +26,8 @@ from strainwave.rig.reading.evaluation import Evaluation, evaluate
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import printed_gear
 from strainwave.rig.virtual.render import Scene, render
-from strainwave.rig.vision.angle import Angles, measure_angles
+from strainwave.rig.vision.angle import measure_angles
+from strainwave.rig.vision.follow import Angles
 from strainwave.rig.vision.image import as_image
 
 from tests.python.report.reading import Page, points, printed, section

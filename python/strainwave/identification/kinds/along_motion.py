@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
 from strainwave.identification.candidates.motion_candidate import (
     SHARE_OF_UNKNOWN_ROTOR,
@@ -43,7 +42,7 @@ from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.checks.unexplained import Judged, judged_shape
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, turnover_speed
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, transmitted_torque, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of

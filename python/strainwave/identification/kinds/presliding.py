@@ -25,8 +25,9 @@ from strainwave.identification.kinds.kind import Ranked
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column
-from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.pictures import Picture
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import correlation_length
 from strainwave.statistics.scale import SIGNIFICANCE_SIGMA

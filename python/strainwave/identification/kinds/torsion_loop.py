@@ -24,10 +24,10 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut, Picture
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit, with_set_before
-from strainwave.identification.results.pictures import curves_of
+from strainwave.identification.results.pictures import Picture, curves_of
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 

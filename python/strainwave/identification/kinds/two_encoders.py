@@ -13,8 +13,9 @@ from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of, pair, sides_of_angles
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar
+from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
 

@@ -17,7 +17,7 @@ from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop
 from strainwave.rig.running.watching import torque_of_masses
 from strainwave.rig.torque.budget import Budget, angle_budget, stiffness_budget, torque_budget
-from strainwave.rig.vision.angle import Angles
+from strainwave.rig.vision.follow import Angles
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,7 +27,8 @@ from strainwave.rig.reading.recorded import scatter
 from strainwave.rig.running.plan_check import check
 from strainwave.rig.torque.couple import remarks_on_couple
 from strainwave.rig.torque.torque import Torque, torque_of, without_compliance
-from strainwave.rig.vision.angle import Angles, Frame, follow, look
+from strainwave.rig.vision.follow import Angles, follow
+from strainwave.rig.vision.frame import Frame, look
 
 Array = NDArray[np.float64]
 RIG, PLAN = "rig.toml", "plan.csv"

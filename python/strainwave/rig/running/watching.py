@@ -13,7 +13,8 @@ from strainwave.rig.bench.setup import Camera, Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import FILE, read_steps
 from strainwave.rig.running.guide import Look
-from strainwave.rig.vision.angle import Frame, follow, look
+from strainwave.rig.vision.follow import follow
+from strainwave.rig.vision.frame import Frame, look
 from strainwave.rig.vision.image import by_number, pictures_in
 
 

@@ -20,8 +20,8 @@ from strainwave.presentation import Statement
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.torque.torque import Torque
-from strainwave.rig.vision.angle import Angles
 from strainwave.rig.vision.camera import changes_nothing, flat
+from strainwave.rig.vision.follow import Angles
 from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
