@@ -27,10 +27,8 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy import fft
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.motion import SampledMotion, motion_of
-from strainwave.diagnose.regression import regressions
-from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
-from strainwave.diagnose.steady_run import COLUMN, RecordedOrder, SteadyRun
+from strainwave.diagnose.regression import SampledMotion, motion_of, regressions
+from strainwave.diagnose.smallest_error import COLUMN, DetectionLimit, RecordedOrder, SteadyRun, detection_limit
 
 Array = NDArray[np.float64]
 

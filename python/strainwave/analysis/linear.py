@@ -11,21 +11,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, Gear, _core, arguments, friction, motor
-from strainwave.analysis.continuous import continuous, state_within
+from strainwave import Drive, Gear, _core, arguments, control, friction, motor, sensor
 from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.presentation import Pictured, Row, counted
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.memory import room_for
 from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
 from strainwave.simulation.state import State, StateLayout, start_of
+from strainwave.simulation.time_grid import room_for
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,6 +39,56 @@ HOLDING_TORQUE = 1e30  # N.m: more than any torque that turns an input
 DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
 INPUTS = ("command", "command_rate", "load_torque", "temperature")
 _COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
+
+
+def continuous(drive: Drive) -> tuple[Drive, tuple[str, ...]]:
+    """Return a drive without what has no linear model, and a note on each part that was left out.
+
+    A sampled controller becomes its law, a sensor with noise, steps or counts the one within it. Energy is not measured, and
+    the drive does not warm up.
+
+    >>> import strainwave as sw
+    >>> law = sw.control.PID(proportional=2.0, derivative=0.05)
+    >>> plain, notes = continuous(sw.Drive(control=sw.control.Sampled(law=law, period=1e-3, delay=2e-4)))
+    >>> plain.control == law, notes
+    (True, ('control: sampling every 0.001 s with a delay of 0.0002 s is left out, as is a compensation',))
+    """
+    parts = {name: (part, note) for name, part, note in _replaced(drive)}
+    plain = drive.replace(**{name: part for name, (part, _) in parts.items()})
+    return plain, tuple(note for _, note in parts.values())
+
+
+def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
+    sampled = drive.control
+    if isinstance(sampled, control.Sampled):
+        times = f"sampling every {sampled.period:g} s with a delay of {sampled.delay:g} s"
+        yield "control", sampled.law, f"control: {times} is left out, as is a compensation"
+    whole = {field["name"]: getattr(drive.sensors, field["name"]) for field in drive.sensors.fields}
+    smooth = {name: _smooth(part) for name, part in whole.items()}
+    if changed := [name for name, part in whole.items() if smooth[name] is not part]:
+        yield (
+            "sensors",
+            drive.sensors.replace(**smooth),
+            f"sensors.{', sensors.'.join(changed)}: noise, steps and counts are left out",
+        )
+    for name, left_out in (("meter", "energy is not measured"), ("thermal", "the drive does not warm up")):
+        if not isinstance(getattr(drive, name), kind := type(getattr(Drive(), name))):
+            yield name, kind(), f"{name}: {left_out}"
+
+
+def _smooth(part: Any) -> Any:
+    """Return a sensor without noise, steps and counts."""
+    while isinstance(part, (sensor.Noisy, sensor.Quantised)):
+        part = part.law
+    return sensor.Ideal() if isinstance(part, sensor.Encoder) else part
+
+
+def state_within(plain: Drive, state: State) -> State:
+    """Return the state of a drive as that of the same drive by `continuous`; what it lacks has its value at rest."""
+    known = {name.replace("control.law.", "control."): value for name, value in state.items()}
+    known |= {name.replace(".law.", "."): value for name, value in known.items() if name.startswith("sensors.")}
+    rest = plain.rest()
+    return rest.replace({name: known[name] for name in rest if name in known})
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from strainwave import Drive
-from strainwave.analysis.agreement import Agreement
-from strainwave.analysis.compare import compare
+from strainwave.analysis.compare import Agreement, compare
 from strainwave.files.recording import Recording
 from strainwave.presentation import Pictured, Row
 from strainwave.simulation.run import Run, simulate

@@ -19,12 +19,12 @@ from strainwave.messages import listed, quoted
 from strainwave.native import kernels
 from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
 from strainwave.simulation.scenario import MIN_DURATION, constant, sine
 from strainwave.simulation.signals import check_continuous, command_unit, outputs as outputs_of, units as units_of
 from strainwave.simulation.state import State, start_of
+from strainwave.simulation.time_grid import check_instants
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 # Numbers by which there is no derivative, by their path or its last name, and why.
 NO_MEASURE = {
     "control.period": (WHEN := "it determines when something happens, not how much of it"),

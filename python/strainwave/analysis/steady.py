@@ -18,6 +18,7 @@ from strainwave.simulation.signals import TWIST, actuation, check_continuous, co
 from strainwave.simulation.state import State, StateLayout, start_of
 
 Array = NDArray[np.float64]
+
 QUASI_STATIC_TIME = 1e30  # s: of a motion that takes so long, friction depends on the path alone
 _ROUNDING_SHARE = 1e-14  # of the terms that cancel [1]
 MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is lost

@@ -14,8 +14,7 @@ from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
 from strainwave.dataset.plan import DatasetPlan, Range, check_unit_grid
 from strainwave.dataset.profiles import command_of, peak_speed
-from strainwave.dataset.sampling import Indices, hashed, points
-from strainwave.dataset.splits import share_of
+from strainwave.dataset.sampling import Indices, hashed, points, share_of
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from strainwave.dataset.features import add_noise
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import MemberTable, Population
-from strainwave.dataset.splits import joint
+from strainwave.dataset.sampling import joint
 from strainwave.files.writing import replacing
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 

@@ -23,8 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.diagnose.detection import FALSE_ALARM, amplitude_interval, false_alarm_of
-from strainwave.diagnose.motion import SampledMotion, motion_of
-from strainwave.diagnose.regression import OrderRegression, regressions
+from strainwave.diagnose.regression import OrderRegression, SampledMotion, motion_of, regressions
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented

@@ -18,7 +18,7 @@ from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_
 from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
+from strainwave.diagnose.smallest_error import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import without_name

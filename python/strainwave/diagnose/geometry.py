@@ -33,9 +33,8 @@ from strainwave.diagnose.inversion import (
     tilted,
     to_point,
 )
-from strainwave.diagnose.possible_drives import TREND_DEGREES, PossibleDrives
-from strainwave.diagnose.reaction import CurrentPerError
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
+from strainwave.diagnose.possible_drives import TREND_DEGREES, CurrentPerError, PossibleDrives
+from strainwave.diagnose.smallest_error import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed

@@ -13,8 +13,8 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.motion import MAX_SAMPLES
 from strainwave.diagnose.refusals import JointRecording
+from strainwave.diagnose.regression import MAX_SAMPLES
 from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
 from strainwave.orders.torque_ripple import Ripple
 from strainwave.statistics.floor import Floor

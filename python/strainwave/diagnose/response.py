@@ -11,7 +11,7 @@ import numpy as np
 
 from strainwave import Drive, loads
 from strainwave.diagnose.replicates import JointMotion
-from strainwave.diagnose.steady_run import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.diagnose.smallest_error import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 

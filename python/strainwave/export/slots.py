@@ -25,11 +25,10 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
-from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, torque_constant
+from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, steady_torque, torque_constant
 from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MAX_MEMBERS, MEASUREMENTS, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
-from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 

@@ -17,9 +17,8 @@ from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
 from strainwave.tuning.candidates import EFFECTS
-from strainwave.tuning.compensate import Compensated
+from strainwave.tuning.compensate import Compensated, draw_errors
 from strainwave.tuning.judging import Judged
-from strainwave.tuning.pictures import draw_errors
 
 if TYPE_CHECKING:
     pass

@@ -16,11 +16,11 @@ from strainwave.messages import shortened
 from strainwave.native import kernels
 from strainwave.progress import Progress, by_count
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Initial, beginning_numbers
-from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
 from strainwave.simulation.run import Course, Run, check_meaning, recorded_of
 from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.state import Initial, beginning_numbers
+from strainwave.simulation.time_grid import check_acting
 
 Array = NDArray[np.float64]
 

@@ -15,18 +15,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, _core, arguments
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
 from strainwave.files.recording import Recording
+from strainwave.files.recording_plot import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
 from strainwave.files.writing import claiming, making
-from strainwave.messages import listed, one_line, quoted
+from strainwave.messages import in_a_sentence, listed, one_line, quoted
 from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.presentation import Pictured, Row, counted
 from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Known, known as initial_of
 from strainwave.simulation.resolution import (
     FASTEST_ON_BRISTLES,
     MAX_STEP_PHASE,
@@ -38,6 +40,7 @@ from strainwave.simulation.resolution import (
 )
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
+from strainwave.simulation.state import Known, known as initial_of
 from strainwave.simulation.threads import available_threads
 from strainwave.simulation.time_grid import TimeGrid
 
@@ -45,6 +48,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 WHOLE = {
     field["name"]
     for kinds in _core.families.values()
@@ -57,14 +61,17 @@ MAX_MEMBERS = 100_000_000  # of one call: their parameters alone take gigabytes
 MIN_POSITIVE = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 # Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
 PART_BYTES, DEVICE_PART_BYTES = 64 << 20, 1 << 30
-
 Backend = Literal["cpu", "gpu", "gpu-float"]
+
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
 RUN_MEMBERS: dict[Backend, Callable[..., Any]] = {
     "cpu": _core.simulate_many,
     "gpu": partial(device.simulate_many, scalar="double"),
     "gpu-float": partial(device.simulate_many, scalar="float"),
 }
+BANDS = ((0.05, 0.95, "90 % of members", 0.2), (0.25, 0.75, "50 % of members", 0.45))  # quantiles, label, opacity
+LEGEND_HEIGHT = 0.3  # inch
+MAX_INSTANTS = 2_000  # that are drawn; of more every n-th
 
 
 class EnsembleWarning(UserWarning):
@@ -149,8 +156,6 @@ class Ensemble(ComparedByFields, Pictured):
         >>> runs.plot(["torque"]).get_suptitle()
         'Torque of 2 members'
         """
-        from strainwave.simulation.ensemble_plot import ensemble_figure
-
         drawn = list(self.columns) if names is None else list(arguments.names("names", names))
         for name in drawn:
             self[name]
@@ -566,3 +571,24 @@ def _tell(failures: Mapping[int, str], members: int) -> None:
             EnsembleWarning,
             stacklevel=3,
         )
+
+
+def ensemble_figure(time: Array, columns: Mapping[str, Array], units: Mapping[str, str], names: Sequence[str]) -> Figure:
+    """Return the figure of some outputs, as `Ensemble.plot` describes it."""
+    step = -(-len(time) // MAX_INSTANTS)
+    ran = ~np.isnan(columns[names[0]][:, 0])
+    title = f"{in_a_sentence([in_words(name) for name in names])} of {ran.sum()} members"
+    with marks.new_figure(MARGIN_HEIGHT + LEGEND_HEIGHT + PANEL_HEIGHT * len(names), title[0].upper() + title[1:]) as figure:
+        axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, name in zip(axes, names, strict=True):
+            values = columns[name][ran, ::step]
+            for low, high, label, opacity in BANDS:
+                edges = np.quantile(values, (low, high), axis=0)
+                style = {"facecolor": LIGHT["measured"], "alpha": opacity, "linewidth": 0.0}
+                axis.fill_between(time[::step], *edges, label=label, **style)
+            axis.plot(time[::step], np.median(values, axis=0), color=LIGHT["ink"], label="median")
+            axis.margins(x=0.01)
+            marks.label_axes(axis, in_words(name), units[name])
+        marks.label_abscissa(axes[-1], "time", "s")
+        marks.legend(figure, axes[0], below=True)
+    return figure

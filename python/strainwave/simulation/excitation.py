@@ -12,12 +12,23 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments
 from strainwave.messages import quoted, shortened
-from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import load_input
-from strainwave.simulation.time_grid import BYTES_PER_INPUTS, BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, NEVER, TimeGrid, grid
+from strainwave.simulation.time_grid import (
+    BYTES_PER_INPUTS,
+    BYTES_PER_STEP,
+    LONG_RUN,
+    LONGER_STEPS,
+    NEVER,
+    TimeGrid,
+    check_instants,
+    check_room,
+    grid,
+    room_for,
+)
 
 Array = NDArray[np.float64]
+
 ROOM_TEMPERATURE = 293.15  # K
 TEMPERATURE_PLACE = 4  # among the inputs
 MAX_ADAPTIVE_STEP = 5e-3  # s

@@ -15,6 +15,7 @@ from strainwave.messages import listed
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
+
 MAX_STEP_PHASE = 1.0  # rad: step times angular frequency of a drive's own motion
 FASTEST_ON_BRISTLES = 2.0  # rad: step times angular frequency of a shaft on its bristles, beyond which fixed steps may be wrong
 MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")

@@ -18,17 +18,26 @@ from strainwave.native import kernels
 from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Initial, beginning_numbers, known
-from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import TWIST, Output
-from strainwave.simulation.state import State
+from strainwave.simulation.state import Initial, State, beginning_numbers, known
 from strainwave.simulation.threads import StepCounter, side_by_side
-from strainwave.simulation.time_grid import BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, STEPS_PER_CHUNK, TimeGrid, grid
+from strainwave.simulation.time_grid import (
+    BYTES_PER_STEP,
+    LONG_RUN,
+    LONGER_STEPS,
+    STEPS_PER_CHUNK,
+    TimeGrid,
+    check_instants,
+    check_room,
+    grid,
+    room_for,
+)
 
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
+
 METHODS: tuple[Method, ...] = get_args(Method)
 SAMPLE_LESS = "sample less often, or record fewer outputs"
 MAX_STEPS_PER_FIXED_STEP = 1000  # adaptive steps of bristles that are too fast for fixed ones

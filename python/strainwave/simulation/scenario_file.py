@@ -29,10 +29,10 @@ from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.presentation import Presented
 from strainwave.simulation import scenario
-from strainwave.simulation.initial import QUANTITIES
 from strainwave.simulation.run import Run, simulate, simulate_adaptively
 from strainwave.simulation.scenario import Scenario, Wave
 from strainwave.simulation.signals import command_unit
+from strainwave.simulation.state import QUANTITIES
 
 WRITTEN = '{ value = 5.0, unit = "deg" }'
 TEXTS = ("name", "note")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core, arguments
 from strainwave.messages import shortened
-from strainwave.simulation.memory import check_acting
+from strainwave.simulation.time_grid import check_acting
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from threading import Event, Lock, Thread
 from typing import Any, TypeVar
 
 StepCounter = Callable[[int], None]  # a call of the core reports to it now and then the count of steps done
+
 T = TypeVar("T")
 
 # Of libraries of linear algebra, whose threads wait for each other if other processes run: ten times the processor time.

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Gear, arguments, typeset
 from strainwave.presentation import Pictured, Presented, counted
 from strainwave.simulation import scenario
-from strainwave.simulation.memory import check_instants
 from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.time_grid import check_instants
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -22,11 +22,11 @@ from strainwave.tuning.cascade import (
     model_of,
     observer_of,
     speed_bandwidth,
+    steady_torque,
     tuned_law,
 )
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.loops import Loops, sampled_cascade
-from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 

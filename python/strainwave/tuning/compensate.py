@@ -11,18 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads, typeset
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, RUNS
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.presentation import Pictured, Reported, Row
 from strainwave.progress import Progress, in_turn
+from strainwave.simulation.run import simulate
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.conditions import ConditionResult, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
-from strainwave.tuning.judging import AT_LIMIT, Judged, judged
+from strainwave.tuning.judging import AT_LIMIT, ConditionResult, Judged, OverCompensation, conditions, judged, over_compensation
 from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, Loops, margins_of, sharpest
 
 if TYPE_CHECKING:
@@ -145,7 +147,6 @@ class Compensated(Pictured, Reported):
     def plot(self) -> Figure:
         """Return a figure of the error of the output over time: of the cascade, and of the controller chosen."""
         from strainwave.drawing import marks
-        from strainwave.tuning.pictures import draw_errors
 
         with marks.new_figure(3.2) as figure:
             draw_errors(figure, self)
@@ -443,3 +444,19 @@ def _has_unknown_phase(gear_set: GearSet, effect: str) -> bool:
 def _all_of(gear_set: GearSet, effect: str) -> list[Parameter]:
     begins = tuple(f"{part}." for part in EFFECTS[effect])
     return [each for path, each in every(gear_set.gear).items() if path.startswith(begins)]
+
+
+def draw_errors(canvas: Figure, compensated: Compensated) -> None:
+    """Draw the error of the output over time, of the gear as it is stated; as a torque if that is the goal."""
+    axes = canvas.add_subplot()
+    command = compensated.goal.command
+    name, unit = ("error of the torque", "N.m") if compensated.goal.name == "torque" else ("error of the output", "rad")
+    runs = {"cascade": compensated.baseline} | ({"compensated": compensated.chosen} if compensated.is_compensated else {})
+    for (label, result), (colour, line, width) in zip(runs.items(), (RUNS[1], RUNS[0]), strict=False):
+        control: Any = result.candidate.drive.control
+        sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
+        run = simulate(result.candidate.drive, command, sample=sample)
+        error = compensated.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
+        marks.curve(axes, run.time, error, color=LIGHT[colour], linestyle=line, linewidth=width, label=label)
+    marks.label_axes(axes, name, unit, "time", "s")
+    marks.legend(canvas, axes)

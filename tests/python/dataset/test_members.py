@@ -11,8 +11,8 @@ import strainwave as sw
 from strainwave.dataset.faults import with_faults
 from strainwave.dataset.members import HEALTHY
 from strainwave.dataset.plan import DatasetPlan
+from strainwave.dataset.sampling import MIXED
 from strainwave.dataset.shards import Shards
-from strainwave.dataset.splits import MIXED
 
 from tests.python.dataset.plans import SMALL, changed, population, shards
 

@@ -11,8 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.diagnose.current_orders import OrderLine, order_lines, synchronous_average
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.motion import motion_of
-from strainwave.diagnose.regression import regressions
+from strainwave.diagnose.regression import motion_of, regressions
 
 from tests.evidence.detection_limits import false_alarms, interval, noises, signature_drive
 

@@ -7,8 +7,7 @@ import pytest
 import strainwave as sw
 from strainwave.diagnose.diagnosis import Question, RunDiagnosis, diagnosed
 from strainwave.diagnose.refusals import usable
-from strainwave.diagnose.smallest_error import detection_limit
-from strainwave.diagnose.steady_run import COLUMN, SteadyRun
+from strainwave.diagnose.smallest_error import COLUMN, SteadyRun, detection_limit
 
 from tests.evidence.detection_limits import signature_drive
 from tests.support.signature_drive import signature_ramp

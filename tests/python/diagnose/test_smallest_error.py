@@ -10,8 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave.diagnose.current_orders import order_lines
 from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
-from strainwave.diagnose.steady_run import COLUMN
+from strainwave.diagnose.smallest_error import COLUMN, DetectionLimit, detection_limit
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 
 from tests.evidence.detection_limits import (

@@ -9,10 +9,9 @@ import pytest
 import strainwave as sw
 from strainwave.tuning.candidates import baseline
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.conditions import TEMPERATURES, OverCompensation, conditions, depends_on_temperature, smaller_effect
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import position
-from strainwave.tuning.judging import judged
+from strainwave.tuning.judging import TEMPERATURES, OverCompensation, conditions, depends_on_temperature, judged, smaller_effect
 
 from tests.support.compensated_joint import robot_joint
 
