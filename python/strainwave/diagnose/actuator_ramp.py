@@ -88,16 +88,11 @@ class ActuatorRamp(Presented):
                 "motor moves, as inertia and aerodynamic are"
             )
         turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
-        if turns * (1.0 - RUN_IN) < MIN_TURNS:
-            needed = np.degrees(stroke * MIN_TURNS / (turns * (1.0 - RUN_IN)))
-            raise ValueError(
-                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {needed:.3g} deg or more"
-            )
-        if turns > MAX_TURNS:
-            longest = np.degrees(stroke * MAX_TURNS / turns)
-            raise ValueError(
-                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {longest:.3g} deg or less"
-            )
+        needed, longest = MIN_TURNS / (1.0 - RUN_IN), MAX_TURNS
+        if not needed <= turns <= longest:
+            limit = f"{np.degrees(stroke * (needed if turns < needed else longest) / turns):.3g} deg"
+            allowed = f"take {limit} or {'more' if turns < needed else 'less'}"
+            raise ValueError(f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; {allowed}")
         for name in ("feedback", "position_gain"):
             _control_path(drive, name)
         return cls(drive, stroke, duration, longest_step(drive))

@@ -106,13 +106,10 @@ class BaselineComparison(Presented):
 
 @dataclass(frozen=True, eq=False)
 class Baseline:
-    """Replicates of a healthy joint.
+    """Replicates of a healthy joint: cells of each recording by block, direction and order.
 
-    Attributes:
-        orders: per revolution of the shaft
-        travel: motion of a block [rad]
-        resolution: by which two orders differ at least that its blocks separate, in orders of the shaft
-        cells: of each recording by block, direction and order
+    The motion of a block is its travel [rad]. Its blocks separate two orders that differ by the resolution, in orders of the
+    shaft.
     """
 
     orders: tuple[float, ...]
@@ -126,11 +123,9 @@ class Baseline:
 
 
 def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Baseline:
-    """Return the replicates of recordings of a healthy joint.
+    """Return the replicates of recordings of a healthy joint, in the same column and over the same angle.
 
-    Args:
-        motions: the recordings, in the same column and over the same angle
-        orders: per revolution of the shaft, the most important first; of two that a block does not separate the first is kept
+    The most important order, per revolution of the shaft, is first: of two that a block does not separate it is kept.
 
     Raises:
         ValueError: there are no orders, or the motion is too short for enough blocks
@@ -242,13 +237,12 @@ def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) 
     a revolution of the output without a gap, every place comes again.
     """
     ratio = 1.0 if run.side == "output" else run.ratio
-    turns = (
-        float(RATIOS[0]) if ratio is None else ratio
-    )  # of the shaft per revolution of the output; the smallest that makers offer
+    turns = float(RATIOS[0]) if ratio is None else ratio  # of the shaft per revolution of the output, at least
     covered = _joined([(cell.first / turns, cell.last / turns) for cell in known])
     if ratio is not None and any(last - first >= tau for first, last in covered):
         return [False] * len(own), ""
-    elsewhere = [not _is_within(cell.first / turns, cell.last / turns, covered) for cell in own]
+    wider = [(low - _margin(low, high), high + _margin(low, high)) for low, high in covered]
+    elsewhere = [not any(low <= cell.first / turns and cell.last / turns <= high for low, high in wider) for cell in own]
     off = [cell for cell, is_elsewhere in zip(own, elsewhere, strict=True) if is_elsewhere]
     if not off:
         return elsewhere, ""
@@ -275,10 +269,6 @@ def _joined(ranges: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         else:
             joined.append((first, last))
     return joined
-
-
-def _is_within(first: float, last: float, covered: Sequence[tuple[float, float]]) -> bool:
-    return any(low - _margin(low, high) <= first and last <= high + _margin(low, high) for low, high in covered)
 
 
 def _margin(first: float, last: float) -> float:
@@ -326,8 +316,7 @@ class _Expected:
 
     def of(self, cells: Sequence[Cell]) -> Array:
         """Return the amplitude under the conditions of cells, shape (n,)."""
-        predicted: Array = _design(self.condition, cells) @ self.values
-        return predicted
+        return np.asarray(_design(self.condition, cells) @ self.values)
 
     def leverage(self, cells: Sequence[Cell]) -> float:
         """Return the variance of the mean prediction over that of a replicate."""

@@ -166,17 +166,16 @@ class Diagnosis(Presented, Reported):
 
 @dataclass(frozen=True)
 class Question:
-    """Settings of a diagnosis.
+    """Settings of a diagnosis; what is not known or not asked for is None or empty.
 
     Attributes:
-        gear_set: of the joint; None if it is not known
-        ratio: size of the ratio; None if it is not known
+        ratio: its size
         orders: further orders per revolution of the input
         bearings: `sw.fault.WaveGeneratorBearing` with the geometry of bearings, whose orders are named
         false_alarm: stated rate of false alarms, over all tests of a recording
-        hours: of operation, by the name of the recording; empty if they are not known
-        threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
-        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero; None if not asked
+        hours: of operation, by the name of the recording
+        threshold: of the health indicator, at which the gear is to be exchanged
+        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero
     """
 
     gear_set: GearSet | None = None
@@ -222,10 +221,11 @@ def diagnosed(
     arguments.probability("false_alarm", question.false_alarm)
     refused = dict(refused or {})
     if not runs:
-        raise ValueError(_all_refused(refused) or "there is no recording to diagnose; give one or more")
+        reasons = "; ".join(f"{name}: {why}" for name, why in refused.items())
+        raise ValueError(reasons or "there is no recording to diagnose; give one or more")
     _check_alike([*runs, *baseline])
     healthy = [joint_motion(run) for run in baseline]
-    known = [line for run in baseline for line in gear_lines(_blind(run, question))]
+    known = [line for run in baseline for line in gear_lines(_blind(run))]
     done: list[RunDiagnosis] = []
     for run in runs:
         try:
@@ -233,7 +233,7 @@ def diagnosed(
         except ValueError as error:
             refused[run.name] = without_name(str(error), run.name)
     if not done:
-        raise ValueError(_all_refused(refused))
+        raise ValueError("; ".join(f"{name}: {why}" for name, why in refused.items()))
     remarks: list[str] = []
     if not baseline:
         remarks.append(
@@ -255,11 +255,7 @@ def diagnosed(
     )
 
 
-def _all_refused(refused: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {why}" for name, why in refused.items())
-
-
-def _blind(run: JointRecording, question: Question) -> Ripple:
+def _blind(run: JointRecording) -> Ripple:
     return ripple(
         run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
     )
@@ -278,14 +274,12 @@ def _check_alike(runs: Sequence[JointRecording]) -> None:
 
 
 def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
-    found = _blind(run, question)
+    found = _blind(run)
     motion = joint_motion(run)
     named = question.named_orders(run)
     orders, response = _against_noise(motion, named, found, question)
     comparison, remarks = _compared(motion, found, question, healthy, known)
-    alarms = (
-        [] if comparison is None else [_located(each.order, comparison, found, motion, known) for each in comparison.alarms]
-    )
+    alarms = [_located(each.order, comparison, found, motion, known) for each in comparison.alarms] if comparison else []
     name = name_of(*alarms[0], named) if alarms else ""
     verdict, reason = _verdict(orders, comparison, found, name, bool(healthy), remarks, run.unit)
     geometry = _geometry(run, question, remarks)
@@ -494,10 +488,10 @@ def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str])
         return None
     if not question.hours:
         raise ValueError("--threshold needs the hours of operation of each recording: add --hours, one number for each")
-    by_name = [(each.condition.indicator, question.hours[each.name]) for each in done if each.condition is not None]
-    indicators, hours = [one for one, _ in by_name], [one for _, one in by_name]
+    judged = [run for run in done if run.condition is not None]
+    hours = [question.hours[run.name] for run in judged]
     try:
-        return trend(hours, indicators, question.threshold)
+        return trend(hours, [run.condition.indicator for run in judged if run.condition], question.threshold)
     except ValueError as error:
         remarks.append(f"no trend: {error}")
         return None

@@ -157,9 +157,11 @@ def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
     line = np.rint(spectrum["order"] * orders.revolutions)
     apart, quiet = _noise_lines(line, orders.revolutions)
     if not quiet.any():
+        highest = ORDERS[-1] + SPECTRUM_MARGIN
+        needed = next(k for k in count(1) if _noise_lines(np.arange(1.0, highest * k + 1e-9), k)[1].any())
         raise ValueError(
             f"the ramp has {orders.revolutions:g} whole revolutions of the input after the run-in; the noise of orders "
-            f"{ORDERS[0]:g} to {ORDERS[-1]:g} needs {_needed_revolutions()} or more: record a longer stroke"
+            f"{ORDERS[0]:g} to {ORDERS[-1]:g} needs {needed} or more: record a longer stroke"
         )
     near = np.argsort(np.where(quiet, apart, np.inf), axis=1, kind="stable")[:, : min(NOISE_LINES, int(quiet.sum()))]
     noise = np.sqrt(np.mean(spectrum["amplitude"][near] ** 2, axis=1) / (2.0 * HANN_NOISE_POWER))
@@ -171,12 +173,6 @@ def _noise_lines(line: Array, revolutions: float) -> tuple[Array, NDArray[np.boo
     """Return the distance of each line from each order [lines], shape (4, n), and True for lines of noise alone, shape (n,)."""
     apart = np.abs(line - revolutions * np.array(ORDERS)[:, np.newaxis])
     return apart, (apart.min(axis=0) > 1) & (line > MIN_NOISE_ORDER * revolutions)
-
-
-def _needed_revolutions() -> int:
-    """Return the smallest number of whole revolutions with a line of noise alone."""
-    highest = ORDERS[-1] + SPECTRUM_MARGIN
-    return next(each for each in count(1) if _noise_lines(np.arange(1.0, highest * each + 1e-9), each)[1].any())
 
 
 def less_run(recording: Recording, run: Recording, column: str) -> Recording:
@@ -193,10 +189,7 @@ def runs_with_probe(
 ) -> list[tuple[Recording, Recording]]:
     """Return two runs of each drive after the run-in: without error, and with a small error of all orders.
 
-    Args:
-        ramp: of the nominal drive; its kinematic error and the noise of its sensors are left out
-        changes: numbers in which each drive differs from the nominal one
-        record: columns
+    The drives differ from the nominal one by numbers. Its kinematic error and the noise of its sensors are left out.
     """
     law = kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
     quiet = ramp.without_noise().with_error(law)
@@ -209,8 +202,7 @@ def runs_with_probe(
 
 def answer_per_error(straight: Recording, probed: Recording, column: str) -> Complex:
     """Return the answer of a column per error at each order, from runs without and with the probe [unit / rad], shape (4,)."""
-    answer: Complex = (phasors(probed, column) - phasors(straight, column)) / PROBE_AMPLITUDE
-    return answer
+    return np.asarray((phasors(probed, column) - phasors(straight, column)) / PROBE_AMPLITUDE)
 
 
 # ---- Orders of the law --------------------------------------------------------------------------------------------------
@@ -255,8 +247,7 @@ def stacked(values: Complex) -> Array:
 
 
 def _sines(amplitude: Array, phase: Array) -> Complex:
-    values: Complex = amplitude * np.exp(1j * phase)
-    return values
+    return np.asarray(amplitude * np.exp(1j * phase))
 
 
 def _at(law: Any, point: Array) -> Complex:
@@ -325,14 +316,12 @@ def slopes(law: Any, point: Array) -> Array:
 def to_point(error: MeasuredOrders, law: Any, point: Array) -> Array:
     """Return the matrix that gives the change of the point by a small change of the orders, shape (2, 8) or (3, 8)."""
     sigma = np.tile(error.noise, 2)
-    matrix: Array = np.linalg.pinv(slopes(law, point) / sigma[:, None]) / sigma
-    return matrix
+    return np.asarray(np.linalg.pinv(slopes(law, point) / sigma[:, None]) / sigma)
 
 
 def covariance_by(matrix: Array, noise: Array) -> Array:
     """Return the covariance of a point by the noise of the orders [m^2], with the matrix of `to_point`."""
-    covariance: Array = (matrix * np.tile(noise, 2) ** 2) @ matrix.T
-    return covariance
+    return np.asarray((matrix * np.tile(noise, 2) ** 2) @ matrix.T)
 
 
 @dataclass(frozen=True)

@@ -72,17 +72,13 @@ class SweepLevels(Presented):
         lines = []
         for place, level in enumerate(self.column(sweep, SWEEPS[sweep][0])):
             value = {name: float(self.column(sweep, name)[place]) for name in self.table.names}
-            lines.append(
-                [
-                    f"e₁ = {number(level / M_PER_MICRON, 3)} µm" if sweep == "e1" else f"β₂ = {number(np.degrees(level), 2)}°",
-                    table_number(ARCMIN_PER_RADIAN * value["error_swing"], 3),
-                    table_number(value["torque_swing"], 3),
-                    fixed(value["torque_peak"], 3),
-                    table_number(1e3 * value["current_swing"], 3),
-                    fixed(value["current_peak"], 3),
-                    table_number(ARCMIN_PER_RADIAN * value["output_swing"], 2),
-                ]
-            )
+            lines.append([
+                f"e₁ = {number(level / M_PER_MICRON, 3)} µm" if sweep == "e1" else f"β₂ = {number(np.degrees(level), 2)}°",
+                table_number(ARCMIN_PER_RADIAN * value["error_swing"], 3),
+                table_number(value["torque_swing"], 3), fixed(value["torque_peak"], 3),
+                table_number(1e3 * value["current_swing"], 3), fixed(value["current_peak"], 3),
+                table_number(ARCMIN_PER_RADIAN * value["output_swing"], 2),
+            ])  # fmt: skip
         return lines
 
 
@@ -106,21 +102,15 @@ def sweep_misalignment(ramp: ActuatorRamp, law: Any) -> SweepLevels:
     2.0
     """
     changes, rows = _members(SWEEPS if ramp.loop == OUTPUT else BOTH_LOOPS)
-    runs = (
-        ramp.without_noise()
-        .with_error(law)
-        .many(
-            [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes],
-            record=[*CHANNELS, "kinematic_error"],
-        )
-    )
-    found = [_effect(ramp, runs, place) for place in range(len(changes))]
+    members = [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes]
+    runs = ramp.without_noise().with_error(law).many(members, record=[*CHANNELS, "kinematic_error"])
+    effects = [_effect(ramp, runs, place) for place in range(len(changes))]
     names = dict.fromkeys(name for change in changes for name in change)
-    units = {each["name"]: each["unit"] for each in law.fields}
     columns = {name: [change.get(name, getattr(law, name)) for change in changes] for name in names}
-    columns |= {name: [row[name] for row in found] for name in found[0]}
-    known = {name: units[name] for name in names} | {name: _unit(name) for name in found[0]}
-    return SweepLevels(law.combine, ramp.loop, Recording(columns, known), rows)
+    columns |= {name: [effect[name] for effect in effects] for name in effects[0]}
+    units = {field["name"]: field["unit"] for field in law.fields if field["name"] in names}
+    units |= {name: _unit(name) for name in effects[0]}
+    return SweepLevels(law.combine, ramp.loop, Recording(columns, units), rows)
 
 
 def _members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, slice]]:
@@ -137,18 +127,18 @@ def _members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, s
 def _effect(ramp: ActuatorRamp, runs: Ensemble, place: int) -> dict[str, float]:
     """Return the differences of a run from the straight one; names as the columns of `SweepLevels.table`."""
     straight, run = (ramp.settled(runs.member(each)) for each in (0, place))
-    found = {"error_swing": swing(run["kinematic_error"])}
+    effect = {"error_swing": swing(run["kinematic_error"])}
     columns = {"input_angle": run["input_angle"], "error": run["kinematic_error"]}
     for name, column in (("torque", "torque"), ("current", "current"), ("output", "output_angle")):
         columns[name] = run[column] - straight[column]
-        found[f"{name}_swing"] = swing(columns[name])
+        effect[f"{name}_swing"] = swing(columns[name])
     for name in ("torque", "current"):
-        found[f"{name}_peak"] = float(np.abs(run[name]).max() / np.abs(straight[name]).max())
+        effect[f"{name}_peak"] = float(np.abs(run[name]).max() / np.abs(straight[name]).max())
     turning = Recording(columns, {name: "rad" if name == "input_angle" else _unit(name) for name in columns})
     for name in list(columns)[1:]:
         there = order_amplitudes(turning, name, SEEN_ORDERS)
-        found |= {f"{name}_{order:g}": float(size) for order, size in zip(SEEN_ORDERS, there.amplitude, strict=True)}
-    return found
+        effect |= {f"{name}_{order:g}": float(size) for order, size in zip(SEEN_ORDERS, there.amplitude, strict=True)}
+    return effect
 
 
 def swing(values: Array) -> float:

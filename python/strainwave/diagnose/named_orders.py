@@ -45,12 +45,8 @@ class NamedOrder:
 def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]:
     """Return the orders per revolution of the input of damaged elements of bearings, by their names.
 
-    Args:
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
-        kinematics: of the gear, whose teeth and fixed spline determine the speed of the outer ring
-
     Raises:
-        ValueError: the gear has no teeth
+        ValueError: the gear has no teeth, which determine the speed of the outer ring
     """
     if not bearings:
         return {}
@@ -71,11 +67,7 @@ def named_orders(
 ) -> tuple[NamedOrder, ...]:
     """Return the orders that a strain wave gear may have over the angle of a shaft; empty if its ratio is not known.
 
-    Args:
-        run: the recording
-        kinematics: of the gear; None if it is not known
-        further: orders per revolution of the input
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
+    Further orders are per revolution of the input; of bearings (`sw.fault.WaveGeneratorBearing`) the geometry counts.
     """
     if not np.isfinite(run.per_input):
         return ()
@@ -113,11 +105,8 @@ def causes(
 ) -> tuple[str, ...]:
     """Return what orders of a shaft repeat with in a strain wave gear, a sentence for each cause.
 
-    Args:
-        orders: per revolution of the shaft, each with the resolution with which it was found
-        per_input: revolutions of the input per revolution of the shaft; nan if it is not known
-        kinematics: of the gear, whose teeth separate the splines; None if it is not known
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
+    Each order per revolution of the shaft has the resolution with which it was found. `per_input` is the number of revolutions
+    of the input per revolution of the shaft, nan if it is not known.
     """
     if not np.isfinite(per_input):
         return ()

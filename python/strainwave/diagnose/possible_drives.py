@@ -58,14 +58,12 @@ class CurrentPerError:
     @property
     def reaction(self) -> Complex:
         """Current per error by the reaction of the error [A/rad]."""
-        value: Complex = self.per_torque * self.torque
-        return value
+        return np.asarray(self.per_torque * self.torque)
 
     @property
     def total(self) -> Complex:
         """Current per error [A/rad]."""
-        value: Complex = self.inertial + self.reaction
-        return value
+        return np.asarray(self.inertial + self.reaction)
 
     def if_all_were_reaction(self, order: float) -> complex:
         """Return the error that a diagnosis without the inertial part would report, over the true error.
@@ -82,15 +80,13 @@ class CurrentPerError:
             1e3 * error * abs(complex(part[place])) for part in (self.total, self.inertial, self.reaction)
         )
         wrong = self.if_all_were_reaction(order)
+        apart = abs(np.degrees(np.angle(complex(self.inertial[place] / self.reaction[place]))))
         return (
             f"Order {order:g}: {total:.3g} mA, of which {reaction:.3g} mA come from the reaction at {self.torque:.3g} N.m and "
-            f"{inertial:.3g} mA from inertia and loops, {abs(np.degrees(np.angle(self._ratio(place)))):.0f} deg apart. Taken "
+            f"{inertial:.3g} mA from inertia and loops, {apart:.0f} deg apart. Taken "
             f"for reaction alone, the amplitude of the error would be {abs(wrong):.2f} times the true one and its phase "
             f"{np.degrees(np.angle(wrong)):+.0f} deg off."
         )
-
-    def _ratio(self, place: int) -> complex:
-        return complex(self.inertial[place] / self.reaction[place])
 
     def _place(self, order: float) -> int:
         if order not in self.order:
@@ -145,11 +141,7 @@ def parts_over_load(lines: ArrayLike, torque: ArrayLike, sigma: ArrayLike) -> Pa
 
 
 def current_per_error(ramp: ActuatorRamp) -> CurrentPerError:
-    """Return the current that a drive has per kinematic error of each order, from runs of the drive at three loads.
-
-    Args:
-        ramp: of the drive; its kinematic error is not used
-    """
+    """Return the current that a drive has per kinematic error of each order, from runs of the drive at three loads."""
     load: Any = ramp.drive.load
     inertia = float(load.inertia)
     own = _gain_and_torque(ramp)
@@ -246,11 +238,10 @@ def _moved(design: Array, values: Complex) -> Complex:
 
     The residual of the regression is enlarged by the degrees of freedom that the regression took.
     """
-    found = solved(design, values)
-    rest = values - design @ found
+    coefficients = solved(design, values)
+    rest = values - design @ coefficients
     members, terms = design.shape
-    moved: Complex = found[0] + rest * np.sqrt((members - 1.0) / (members - terms))
-    return moved
+    return np.asarray(coefficients[0] + rest * np.sqrt((members - 1.0) / (members - terms)))
 
 
 def drawn_changes(gear_set: GearSet | Drive, ramp: ActuatorRamp, members: int, seed: int) -> list[dict[str, float]]:

@@ -77,8 +77,7 @@ def usable(
     """Return a recording as a diagnosis uses it.
 
     Args:
-        recording: columns with the names of a drive log
-        name: of the recording, for messages
+        recording, name: columns with the names of a drive log, and the name for messages
         ratio: of the gear, if it is known; the sign does not matter
         side: on which the angle or speed was measured, if its name does not contain it
         rate: samples per second of a recording without time [Hz]

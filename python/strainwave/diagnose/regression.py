@@ -93,20 +93,11 @@ def motion_of(
     ratio: float | None = None,
     rate: float | None = None,
 ) -> SampledMotion:
-    """Return the shaft with the column, prepared for orders up to the highest.
+    """Return the shaft with the column, prepared for orders up to the highest; arguments as of `order_lines`.
 
     A motion of one sense is cut to its last whole revolutions: of the output if it makes one and its angle or the ratio is
     known, else of the shaft. So no whole order leaks into its neighbours. Samples are averaged as far as the highest order
     allows.
-
-    Args:
-        recording: with the column, the angle, and `time` if it is known
-        column: current or torque
-        highest: order [1]
-        load_column: torque of the load, if it was measured
-        angle: column with the angle of the shaft
-        ratio: of the gear; from `output_angle` if it is recorded and no ratio is given
-        rate: samples per second of a recording without time [Hz]
 
     Raises:
         TypeError: an argument is not of its kind
@@ -119,16 +110,24 @@ def motion_of(
     record = evenly_turning(recording, [angle], [column, *([load_column] if load_column else [])], rate, MAX_SAMPLES)
     turned, series, measured = record.columns[angle], record.columns[column], record.measured
     load = record.columns[load_column] if load_column else None
-    _check_turns(turned, angle)
-    size = _ratio(recording, turned, angle, ratio)
-    moves = _senses(turned)
-    cut, remarks = _whole(turned, size) if moves == 1 else (slice(None), [])
+    turns = float(np.ptp(turned)) / tau
+    if turns == 0.0:
+        raise ValueError(f"{quoted(angle)} does not change: the shaft rests; record it while it turns")
+    if turns < MIN_REVOLUTIONS:
+        raise ValueError(
+            f"{quoted(angle)} turns {turns:.3g} revolutions; orders need {MIN_REVOLUTIONS:g} or more: turn further"
+        )
+    size = _ratio(recording, angle, ratio)
+    path = float(np.abs(np.diff(turned[:: max(1, len(turned) // 512)])).sum())
+    turns_one_way = abs(float(turned[-1] - turned[0])) > 0.98 * path  # but for noise
+    cut, remarks = _whole(turned, size) if turns_one_way else (slice(None), [])
     turned, series, measured = turned[cut], series[cut], measured[cut]
     load = None if load is None else load[cut]
     speed = _slow_speed(turned) / record.step
     fast = float(np.quantile(np.abs(speed), 0.95))
     used = measured & (np.abs(speed) > MIN_SPEED_SHARE * fast)
-    every = _averaged(fast * record.step, highest, len(turned))
+    by_order = int(MAX_PHASE_STEP / max(fast * record.step * highest, 1e-300))
+    every = max(1, min(by_order, MAX_AVERAGED, len(turned) // 512))  # keeps the highest order, and enough samples
     remarks = [*record.remarks, *remarks]
     if (resting := float(np.mean(~used))) > 0.01:
         remarks.append(f"{resting:.0%} of the samples are of rest or slow motion, or were filled in, and do not count")
@@ -150,17 +149,7 @@ def motion_of(
     )
 
 
-def _check_turns(turned: Array, angle: str) -> None:
-    turns = float(np.ptp(turned)) / tau
-    if turns == 0.0:
-        raise ValueError(f"{quoted(angle)} does not change: the shaft rests; record it while it turns")
-    if turns < MIN_REVOLUTIONS:
-        raise ValueError(
-            f"{quoted(angle)} turns {turns:.3g} revolutions; orders need {MIN_REVOLUTIONS:g} or more: turn further"
-        )
-
-
-def _ratio(recording: Recording, turned: Array, angle: str, given: float | None) -> float:
+def _ratio(recording: Recording, angle: str, given: float | None) -> float:
     """Return the size of the ratio, from the output angle if none is given; nan if neither is known."""
     if given is not None:
         return abs(arguments.ratio("ratio", given))
@@ -169,12 +158,6 @@ def _ratio(recording: Recording, turned: Array, angle: str, given: float | None)
     output = unwrapped("output_angle", recording.values("output_angle", "rad"))
     span = float(np.ptp(output))
     return float(np.ptp(unwrapped(angle, recording.values(angle, "rad")))) / span if span > 0.0 else float("nan")
-
-
-def _senses(turned: Array) -> int:
-    """Return 1 if the shaft turns one way but for noise, else 2."""
-    path = float(np.abs(np.diff(turned[:: max(1, len(turned) // 512)])).sum())
-    return 1 if abs(float(turned[-1] - turned[0])) > 0.98 * path else 2
 
 
 def _whole(turned: Array, ratio: float) -> tuple[slice, list[str]]:
@@ -202,17 +185,9 @@ def _slow_speed(turned: Array) -> Array:
     return speed
 
 
-def _averaged(fast: float, highest: float, count: int) -> int:
-    """Return the neighbours to average that keep the highest order, and enough samples."""
-    by_order = int(MAX_PHASE_STEP / max(fast * highest, 1e-300))
-    return max(1, min(by_order, MAX_AVERAGED, count // 512))
-
-
 def _means(series: Array, every: int) -> Array:
     """Return means of so many neighbours each; the rest at the beginning is left out."""
-    rest = len(series) % every
-    means: Array = series[rest:].reshape(-1, every).mean(axis=1)
-    return means
+    return np.asarray(series[len(series) % every :].reshape(-1, every).mean(axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,8 +229,7 @@ class OrderRegression:
 
     def variance(self, series: Array) -> Array:
         """Return the variance of a sample of white noise that has the level around the order, of each column of the series."""
-        level: Array = np.sum((self.noise.T @ series) ** 2, axis=0) / self.freedom
-        return level
+        return np.asarray(np.sum((self.noise.T @ series) ** 2, axis=0) / self.freedom)
 
     def _around(self, series: Array) -> Array:
         """Return the coefficients of the parts of each neighbour, shape (2 parts, neighbours, series)."""
@@ -272,29 +246,29 @@ class OrderRegression:
             return self.factor * float(self.variance(series[:, None])[0])
         around = _complex(self._around(series[:, None])[..., 0])
         level = (around @ around.conj().T) / (2.0 * around.shape[1])
+        real = np.zeros((2 * len(level), 2 * len(level)))  # of sines and cosines
+        real[0::2, 0::2] = real[1::2, 1::2] = level.real
+        real[1::2, 0::2], real[0::2, 1::2] = level.imag, -level.imag
         root = _root(self.factor)
-        found: Array = root @ _real(level) @ root
-        return found
+        return np.asarray(root @ real @ root)
 
     def evidence(self, series: Array) -> Array:
         """Return F of all parts of the order together, of each column of the series, shape (k,).
 
         With several parts this is Hotelling's test: the covariance of the parts is that of their neighbours.
         """
-        found = self.estimator @ series
+        coefficients = self.estimator @ series
         if len(self.names) == 1:
-            square = np.sum(found * np.linalg.solve(self.factor, found), axis=0)
-            explained: Array = square / len(found) / np.maximum(self.variance(series), 1e-300)
-            return explained
-        own = _complex(np.linalg.solve(_root(self.factor), found))
+            square = np.sum(coefficients * np.linalg.solve(self.factor, coefficients), axis=0)
+            return np.asarray(square / len(coefficients) / np.maximum(self.variance(series), 1e-300))
+        own = _complex(np.linalg.solve(_root(self.factor), coefficients))
         around = _complex(self._around(series))
         parts, count = len(self.names), around.shape[1]
         level = np.einsum("pkm,qkm->mpq", around, around.conj()) / count
         level = level + 1e-300 * np.eye(parts)
         solved = np.linalg.solve(level, own.T[..., None])[..., 0]
         square = np.sum(own.T.conj() * solved, axis=1).real
-        scaled: Array = square * (count - parts + 1) / (count * parts)
-        return scaled
+        return np.asarray(square * (count - parts + 1) / (count * parts))
 
 
 def _complex(scores: NDArray[Any]) -> NDArray[np.complex128]:
@@ -302,27 +276,16 @@ def _complex(scores: NDArray[Any]) -> NDArray[np.complex128]:
     return scores[0::2] + 1j * scores[1::2]
 
 
-def _real(level: NDArray[np.complex128]) -> Array:
-    """Return the covariance of sines and cosines of a complex one, shape (2 parts, 2 parts)."""
-    found = np.zeros((2 * len(level), 2 * len(level)))
-    found[0::2, 0::2] = found[1::2, 1::2] = level.real
-    found[1::2, 0::2], found[0::2, 1::2] = level.imag, -level.imag
-    return found
-
-
 def _root(matrix: Array) -> Array:
     """Return the symmetric square root of a positive matrix."""
     values, vectors = np.linalg.eigh(matrix)
-    root: Array = (vectors * np.sqrt(np.maximum(values, 1e-300))) @ vectors.T
-    return root
+    return np.asarray((vectors * np.sqrt(np.maximum(values, 1e-300))) @ vectors.T)
 
 
 def smooth_columns(motion: SampledMotion, lowest: float) -> Array:
     """Return columns of what is no order: friction over speed, inertia, load, gravity and a slow trend, shape (n, k).
 
-    Args:
-        motion: of the shaft
-        lowest: order that the trend must not contain
+    The trend does not contain the lowest order.
     """
     count = len(motion.angle)
     place = np.linspace(0.0, np.pi, count)
@@ -350,24 +313,20 @@ def growths(motion: SampledMotion) -> dict[str, Array]:
     Friction ripple turns over with the direction, the kinematic part grows with the load, the inertial part with the square of
     the speed, in (rad/s)².
     """
-    found = {"constant": np.ones_like(motion.angle)}
+    grows = {"constant": np.ones_like(motion.angle)}
     backward = float(np.mean(motion.sense < 0.0))
     if MIN_SENSE_SHARE < backward < 1.0 - MIN_SENSE_SHARE:
-        found["friction"] = motion.sense
+        grows["friction"] = motion.sense
     if motion.load is not None and float(np.std(motion.load)) > MIN_SPREAD * float(np.sqrt(np.mean(motion.load**2))):
-        found["kinematic"] = motion.load
+        grows["kinematic"] = motion.load
     squared = motion.speed**2
     if float(np.std(squared)) > MIN_SPREAD * float(np.mean(squared)):
-        found["inertial"] = squared
-    return found
+        grows["inertial"] = squared
+    return grows
 
 
 def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderRegression]:
-    """Return the regression of each order, all fitted together with the smooth part.
-
-    Args:
-        motion: of the shaft
-        orders: that the record separates, increasing or not
+    """Return the regression of each order, all fitted together with the smooth part; the record must separate them.
 
     Raises:
         ValueError: an order leaves no room for the noise around it
@@ -377,7 +336,7 @@ def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderReg
     waves = [np.stack([wave * each for each in grows.values() for wave in motion.wave(order)], axis=1) for order in orders]
     single = [np.stack(motion.wave(order), axis=1) for order in orders]
     everything = np.concatenate([*waves, smooth], axis=1)
-    white = _whitening(motion.series, everything) if len(grows) > 1 else _unchanged
+    white: Callable[[Array], Array] = _whitening(motion.series, everything) if len(grows) > 1 else np.asarray
     inverse, factor, basis = _solved(white(everything))
     mean_inverse, mean_factor, _ = _solved(white(np.concatenate([*single, smooth], axis=1)))
     width, found = 2 * len(grows), []
@@ -416,20 +375,15 @@ def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> 
     return found
 
 
-def _unchanged(columns: Array) -> Array:
-    return columns
-
-
 def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
     """Return the filter that makes noise white, from what no column explains: motion at many speeds sees all its colours.
 
     The filter is symmetric, so that the product of filtered columns with a filtered series is that of twice filtered columns
     with the series itself.
     """
-    found = floor_without(columns, series, np.ones(len(series)))
-    level = np.maximum(found.level, found.level.max() / MAX_NOISE_RANGE)
-    floor = Floor(found.place, level / level.max(), found.lines)
-    return floor.whitened
+    floor = floor_without(columns, series, np.ones(len(series)))
+    level = np.maximum(floor.level, floor.level.max() / MAX_NOISE_RANGE)
+    return Floor(floor.place, level / level.max(), floor.lines).whitened
 
 
 def _noise_basis(
@@ -443,8 +397,7 @@ def _noise_basis(
     columns = columns - basis @ (basis.T @ columns)
     values, vectors = np.linalg.eigh(columns.T @ columns)
     kept = values > values.max() * 1e-6
-    orthonormal: Array = columns @ (vectors[:, kept] / np.sqrt(values[kept]))
-    return orthonormal
+    return np.asarray(columns @ (vectors[:, kept] / np.sqrt(values[kept])))
 
 
 def _scores(

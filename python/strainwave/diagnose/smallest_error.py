@@ -25,7 +25,7 @@ from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import listed
 from strainwave.presentation import Presented
 from strainwave.simulation.run import simulate
-from strainwave.simulation.scenario import Scenario, constant, ramp
+from strainwave.simulation.scenario import constant, ramp
 from strainwave.simulation.signals import outputs
 
 Array = NDArray[np.float64]
@@ -101,11 +101,7 @@ class SteadyRun:
         return float(np.ceil(wanted * self.sample_rate)) / self.sample_rate
 
     def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
-        """Return the record of a run with an error of the order, after the run-in.
-
-        Args:
-            amplitude: of the error at the output [rad]
-            phase: of it [rad], as of a sine
+        """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad].
 
         Raises:
             ValueError: the drive does not reach the speed
@@ -116,9 +112,10 @@ class SteadyRun:
         output = self.speed / abs(ratio)
         length = self.run_in + self.duration
         start = {"output_speed": output, "input_speed": output * ratio}
+        is_speed_loop = getattr(self.drive.control, "law", self.drive.control).name == "pi"
         run = simulate(
             drive,
-            self._command(output, length),
+            constant(output, length) if is_speed_loop else ramp(output, length),
             min(longest_step(drive), 1.0 / self.sample_rate),
             sample=1.0 / self.sample_rate,
             load_torque=self.load_torque,
@@ -130,18 +127,11 @@ class SteadyRun:
         return record
 
     def gain(self, healthy: RecordedOrder, amplitude: float) -> complex:
-        """Return amplitude and phase of the current per error at an amplitude of the error [A/rad].
+        """Return amplitude and phase of the current per error at an amplitude of the error at the output [rad] [A/rad].
 
-        Args:
-            healthy: the order in a run without error
-            amplitude: of the error at the output [rad]: hysteresis and friction answer a small one otherwise than a large one
+        Hysteresis and friction answer a small error otherwise than a large one.
         """
         return (RecordedOrder.of(self.with_error(amplitude), self.order).wave - healthy.wave) / amplitude
-
-    def _command(self, output: float, length: float) -> Scenario:
-        """Return the command at which the output turns with the speed: a speed of a speed loop, else an angle."""
-        held = getattr(self.drive.control, "law", self.drive.control)
-        return constant(output, length) if held.name == "pi" else ramp(output, length)
 
     def _check_speed(self, record: Recording) -> None:
         """Raise ValueError if the input does not turn as far as the speed makes it, or against it."""

@@ -153,15 +153,10 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
 
 
 def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Sequence[float]) -> Figure:
-    """Return the figure of a `Campbell`, as its `plot` describes it.
-
-    Args:
-        diagram: spectra over the speed
-        orders: lines of the shaft
-        eigenfrequencies: [Hz]
-    """
+    """Return the figure of a `Campbell`, as its `plot` describes it; eigenfrequencies in Hz."""
     lowest, highest = float(diagram.speed[0]), float(diagram.speed[-1])
-    top = _top(diagram.frequency, highest, orders, eigenfrequencies)
+    reached = MAX_FREQUENCY_RATIO * max(eigenfrequencies) if eigenfrequencies else max(orders, default=np.inf) * highest / tau
+    top = min(float(diagram.frequency[-1]), reached)
     shown = diagram.frequency <= top
     column = diagram.column.replace("_", " ")
     dashed = f"; dashed: {'eigenfrequency' if len(eigenfrequencies) == 1 else 'eigenfrequencies'}" if eigenfrequencies else ""
@@ -191,11 +186,3 @@ def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Seq
         axes.set_ylim(0.0, top)
         marks.label_axes(axes, "frequency", "Hz", diagram.speed_column.replace("_", " "), "rad/s")
     return figure
-
-
-def _top(frequency: Any, speed: float, orders: Sequence[float], eigenfrequencies: Sequence[float]) -> float:
-    """Return the highest frequency of the axis: above all eigenfrequencies, and what orders reach if there are none."""
-    nyquist = float(frequency[-1])
-    if eigenfrequencies:
-        return min(nyquist, MAX_FREQUENCY_RATIO * max(eigenfrequencies))
-    return min(nyquist, max(orders, default=np.inf) * speed / tau)

@@ -66,12 +66,8 @@ def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float)
     """Return the most probable ratios whose multiples the order lines of a joint are.
 
     The probability of a ratio follows from Bayes' rule. A line is a wave order or an order of the motor with its prior share,
-    or it lies anywhere by accident. That no ratio explains the lines is one hypothesis among them.
-
-    Args:
-        lines: of a spectrum over the joint angle
-        resolution: 1 / revolutions, in which two lines merge [1]
-        highest: order up to which lines were looked for
+    or it lies anywhere by accident. That no ratio explains the lines is one hypothesis among them. The resolution is
+    1 / revolutions, in which two lines merge [1]; lines were looked for up to the highest order.
     """
     usable = usable_lines(lines, resolution)
     if not usable:
@@ -129,19 +125,14 @@ def _explained(
     return total, tuple(matched)
 
 
-def _other_splines(ratio: int) -> tuple[int, ...]:
-    """Return the turns of the wave generator per output turn, as the spline that is not fixed sees them.
-
-    The gear is one of an even ratio with the circular spline fixed, or of the next odd one with the flexspline fixed.
-    """
-    if ratio in USUAL_RATIOS:
-        return (ratio + 1,) if ratio % 2 == 0 else (ratio - 1,)
-    return ratio + 1, ratio - 1
-
-
 def _teeth(ratio: int, line: float, resolution: float) -> list[tuple[float, float, float]]:
-    """Return order of the input, prior share and place per output turn of the comb's lines that one line may be."""
-    teeth, others = [], _other_splines(ratio)
+    """Return order of the input, prior share and place per output turn of the comb's lines that one line may be.
+
+    The spline that is not fixed sees another number of turns: the gear is one of an even ratio with the circular spline fixed,
+    or of the next odd one with the flexspline fixed.
+    """
+    usual = (ratio + 1,) if ratio % 2 == 0 else (ratio - 1,)
+    teeth, others = [], usual if ratio in USUAL_RATIOS else (ratio + 1, ratio - 1)
     for order, share in WAVE_ORDERS.items():
         teeth.append((order, (1.0 - OTHER_SPLINE_SHARE) * share, order * ratio))
         for other in others:

@@ -89,19 +89,7 @@ class Spectrum:
 def order_spectrum_of(
     weighed: Array, weight: Array, floor: Floor, shaft: Shaft, lowest: float, highest: float, fitted: FittedColumns
 ) -> Spectrum:
-    """Return the spectrum over the angle of a shaft.
-
-    Args:
-        weighed: series over its floor, shape (n,)
-        weight: by which the series was multiplied before, shape (n,)
-        floor: of the series
-        shaft: over whose angle
-        lowest, highest: order
-        fitted: columns that were fitted to the series before
-
-    Raises:
-        ValueError: the spectrum has too many lines to hold
-    """
+    """Return the spectrum over the angle of a shaft, of a series over its floor from which columns were fitted before."""
     angle, span = shaft.angle, float(np.ptp(shaft.angle))
     width = tau / (BINS_PER_PERIOD * highest)
     bins = int(span / width) + 2
@@ -117,15 +105,15 @@ def order_spectrum_of(
     senses = shaft.senses(weight)
     evidence, amplitude, noise = np.zeros(len(order)), np.zeros(len(order)), np.full(len(order), np.inf)
     cells = ((angle - angle.min()) / width).astype(int)
-    for each in senses:
-        there = shaft.sense == each
+    for sense in senses:
+        there = shaft.sense == sense
 
         def over_angle(series: Array, there: NDArray[np.bool_] = there) -> Complex:
             binned = np.bincount(cells[there], (series * weight)[there], bins)
             return np.asarray(np.fft.rfft(binned, length)[kept])
 
         information = _information(order, np.abs(shaft.speed[there]), weight[there], floor)
-        taken = fitted.taken((shaft.name, each, lowest, highest), over_angle, float(weight[there] @ weight[there]))
+        taken = fitted.taken((shaft.name, sense, lowest, highest), over_angle, float(weight[there] @ weight[there]))
         own, size, sigma = _beside(over_angle(weighed), information, taken)
         evidence += own
         noise = np.where(size > amplitude, sigma, noise)
@@ -138,11 +126,6 @@ def _beside(filtered: Complex, information: Array, taken: tuple[Array, Complex])
 
     The series is without what the columns take of it. Of a line they take a share, of one phase more than of another: a speed
     that swings with the order of a gear takes the ripple of one phase. The two parts of the line are solved for beside them.
-
-    Args:
-        filtered: amount of each line in the series
-        information: of each line without the columns
-        taken: by the columns, as of `FittedColumns.taken`
     """
     share, turned = taken
     left = np.maximum(1.0 - share, np.abs(turned) + MIN_OWN_INFORMATION)
@@ -159,8 +142,8 @@ def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float, 
     place = place[kept]
     squared, level = float(weight @ weight), floor.at(place)
 
-    def over_time(each: Array) -> Complex:
-        return np.asarray(np.fft.rfft(each * weight, length)[kept])
+    def over_time(values: Array) -> Complex:
+        return np.asarray(np.fft.rfft(values * weight, length)[kept])
 
     taken = fitted.taken(("time", lowest), over_time, squared)
     return _levelled(Spectrum(place, *_beside(over_time(series) / level, squared / level, taken), 1, 0.0))
@@ -178,14 +161,8 @@ def _levelled(spectrum: Spectrum) -> Spectrum:
     median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
     level = np.repeat(median, thinned)[: len(spectrum.evidence)] / float(gammaincinv(spectrum.parts, 0.5))
     level = np.maximum(level, 1.0)  # what the smooth part took out is no lower floor
-    return Spectrum(
-        spectrum.place,
-        spectrum.evidence / level,
-        spectrum.amplitude,
-        spectrum.noise * np.sqrt(level),
-        spectrum.parts,
-        max(2.0, around / MEDIAN_VARIANCE * spectrum.parts),
-    )
+    floors = max(2.0, around / MEDIAN_VARIANCE * spectrum.parts)
+    return replace(spectrum, evidence=spectrum.evidence / level, noise=spectrum.noise * np.sqrt(level), floors=floors)
 
 
 def _information(order: Array, speed: Array, weight: Array, floor: Floor) -> Array:
@@ -323,13 +300,7 @@ class _Spectra:
 
 
 def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) -> LineSearch:
-    """Return all lines that noise makes with less than the allowed probability.
-
-    Args:
-        moving: the series and the shafts
-        lowest, highest: order [1]
-        allowed: probability of a false alarm, over all lines tested together
-    """
+    """Return all lines of these orders [1] that noise makes with less than the allowed probability, over all lines together."""
     kept: list[SpectrumLine] = []
     left = moving.series
     for _ in range(MAX_LINES):
@@ -368,8 +339,7 @@ def _spectra_floor(moving: Moving, left: Array) -> Floor:
 def _spectra(moving: Moving, left: Array, lowest: float, highest: float, floor: Floor | None = None) -> _Spectra:
     weighted, weight = left * moving.weight, moving.weight
     floor = _spectra_floor(moving, left) if floor is None else floor
-    weighed = floor.weighed(weighted)
-    weighed = moving.fitted.left(weighed)
+    weighed = moving.fitted.left(floor.weighed(weighted))
     over_angle = [order_spectrum_of(weighed, weight, floor, moving.own, lowest, highest, moving.fitted)]
     for other in moving.shafts[1:]:
         slow = MIN_PERIODS / other.revolutions
@@ -382,9 +352,9 @@ def _strongest(moving: Moving, spectra: _Spectra) -> SpectrumLine | None:
     """Return the line that noise makes with the least probability, with what it may repeat with; none without an order."""
     if not len(spectra.over_angle[0].place):
         return None
-    found = [_peak_line(moving, shaft, each, spectra) for shaft, each in zip(moving.shafts, spectra.over_angle, strict=True)]
-    found.append(_peak_line(moving, None, spectra.over_time, spectra))
-    best = min(found, key=lambda each: (each.false_alarm, -each.evidence))
+    peaks = [_peak_line(moving, shaft, each, spectra) for shaft, each in zip(moving.shafts, spectra.over_angle, strict=True)]
+    peaks.append(_peak_line(moving, None, spectra.over_time, spectra))
+    best = min(peaks, key=lambda line: (line.false_alarm, -line.evidence))
     margin = max(MIN_EVIDENCE_LEAD, MIN_EVIDENCE_LEAD_SHARE * best.evidence)
     near = [each for each in _passing(moving, best, spectra) if best.evidence - each.evidence <= margin]
     joints = {"joint"} & {each.kind for each in (best, *near)}  # any order of another joint may pass at these frequencies
@@ -438,16 +408,16 @@ def _passing(moving: Moving, line: SpectrumLine, spectra: _Spectra) -> list[Spec
         slow, _, fast = _speeds(moving, _shaft(moving, line))
         low, high = line.order * slow / tau, line.order * fast / tau
     low, high = low - step, high + step
-    found = []
+    peaks = []
     for shaft, spectrum in zip(moving.shafts, spectra.over_angle, strict=True):
         if line.kind == "time" or shaft.name != line.joint:
             slow, _, fast = _speeds(moving, shaft)
             passed = (spectrum.place >= tau * low / fast) & (spectrum.place <= tau * high / slow)
-            found.append(_peak_line(moving, shaft, spectrum, spectra, passed))
+            peaks.append(_peak_line(moving, shaft, spectrum, spectra, passed))
     if line.kind != "time":
         passed = (spectra.over_time.place >= low) & (spectra.over_time.place <= high)
-        found.append(_peak_line(moving, None, spectra.over_time, spectra, passed))
-    return [each for each in found if each.evidence > 0.0]
+        peaks.append(_peak_line(moving, None, spectra.over_time, spectra, passed))
+    return [peak for peak in peaks if peak.evidence > 0.0]
 
 
 def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
@@ -460,10 +430,8 @@ def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
 
 def _overlap(moving: Moving, line: SpectrumLine, other: SpectrumLine, floor: Floor) -> float:
     """Return the largest squared canonical correlation of the waves of two lines under the noise."""
-    bases = []
-    for each in (line, other):
-        bases.append(np.linalg.qr(floor.coordinates(np.stack(waves(moving, each), axis=1)))[0])
-    return float(np.linalg.norm(bases[0].T @ bases[1], 2) ** 2)
+    one, two = (np.linalg.qr(floor.coordinates(np.stack(waves(moving, wave), axis=1)))[0] for wave in (line, other))
+    return float(np.linalg.norm(one.T @ two, 2) ** 2)
 
 
 def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
@@ -483,15 +451,15 @@ def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
 def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tuple[list[SpectrumLine], Array]:
     """Fit all lines together, and the smooth part with them. Return them with their amplitudes, and the series without them."""
     shapes = [waves(moving, line) for line in lines]
-    flat = moving.fitted.left(np.stack([wave for each in shapes for wave in each], axis=1))  # Frisch and Waugh (1933)
+    flat = moving.fitted.left(np.stack([wave for pair in shapes for wave in pair], axis=1))  # Frisch and Waugh (1933)
     values, covariance = weighed_fit(flat, moving.series * moving.weight, floor)
     done, first = [], 0
     left = moving.series.copy()
-    for line, each in zip(lines, shapes, strict=True):
-        last = first + len(each)
-        found, sigmas = values[first:last], np.sqrt(np.diag(covariance)[first:last])
-        parts = [complex(found[k], found[k + 1]) for k in range(0, len(each), 2)]
-        sigma = max(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(each), 2))
+    for line, shape in zip(lines, shapes, strict=True):
+        last = first + len(shape)
+        own, sigmas = values[first:last], np.sqrt(np.diag(covariance)[first:last])
+        parts = [complex(own[k], own[k + 1]) for k in range(0, len(shape), 2)]
+        sigma = max(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(shape), 2))
         if line.kind == "time":
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:
@@ -505,14 +473,7 @@ def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tup
 
 
 def _with_orders(moving: Moving, lines: Sequence[SpectrumLine], left: Array, floor: Floor) -> list[SpectrumLine]:
-    """Return lines with their orders moved by a step of Gauss and Newton: a peak between skirts of its own is not its line.
-
-    Args:
-        moving: the series and the shafts
-        lines: with their amplitudes
-        left: series without them, shape (n,)
-        floor: of it
-    """
+    """Return lines with their orders moved by a step of Gauss and Newton: a peak between skirts of its own is not its line."""
     moved = [line for line in lines if line.kind != "time"]
     if not moved:
         return list(lines)

@@ -78,18 +78,19 @@ def orders_found(
     if "input_angle" in recording and "output_angle" in recording:
         load = next((each for each in ("joint_torque", "current") if each in recording), "")
         both = [each for each in ("time", "input_angle", "output_angle", load) if each in recording]
-        found = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
+        error_of_gear = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
         if effort is None:
-            return OrdersFound(name, found, None)
-        in_joint_units = found.ratio.in_joint_units
+            return OrdersFound(name, error_of_gear, None)
+        in_joint_units = error_of_gear.ratio.in_joint_units
         try:
             own = ripple(
                 recording, effort, angle="input_angle", side="output" if in_joint_units else "input",
-                ratio=ratio if in_joint_units else abs(found.ratio.used), highest=highest, rate=rate, other_angles=other_angles,
+                ratio=ratio if in_joint_units else abs(error_of_gear.ratio.used), highest=highest, rate=rate,
+                other_angles=other_angles,
             )  # fmt: skip
         except ValueError as error:
-            return OrdersFound(name, found, None, (f"ripple in {effort} is not determined: {error}",))
-        return OrdersFound(name, found, own)
+            return OrdersFound(name, error_of_gear, None, (f"ripple in {effort} is not determined: {error}",))
+        return OrdersFound(name, error_of_gear, own)
     if effort is None:
         raise ValueError(
             f"orders need two angles, input_angle and output_angle, or one angle and a torque or current; there are "
@@ -97,18 +98,11 @@ def orders_found(
         )
     turning, angle, known, remarks = with_angle(recording, side, rate)
     lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
-    passing = _run_up(lines) if effort == "vibration" else None
-    return OrdersFound(
-        name, None, replace(lines, remarks=(*remarks, *lines.remarks)), () if passing is None else passing.remarks, passing
-    )
-
-
-def _run_up(found: Ripple) -> RunUp | None:
-    """Return the orders of a vibration and the resonance that they pass; None if the speed is too constant."""
-    curves = found.curves
-    if "speed" not in curves or not is_run_up(curves["speed"]):
-        return None
-    return run_up(curves.time, curves["angle"], curves["speed"], curves["series"], found.lines)
+    passing, curves = None, lines.curves
+    if effort == "vibration" and "speed" in curves and is_run_up(curves["speed"]):
+        passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
+    lines = replace(lines, remarks=(*remarks, *lines.remarks))
+    return OrdersFound(name, None, lines, () if passing is None else passing.remarks, passing)
 
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:

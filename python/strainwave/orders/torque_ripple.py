@@ -12,6 +12,7 @@ import numpy as np
 
 from strainwave import arguments, typeset
 from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
@@ -113,11 +114,27 @@ class Ripple(ComparedByFields, Pictured, Reported):
 
     def plot(self) -> Figure:
         """Return a figure of amplitude over order, with the noise, what a line needs, and the lines found."""
-        from strainwave.orders.pictures import draw_spectrum
-
         with marks.new_figure(3.2) as figure:
             draw_spectrum(figure, self)
         return figure
+
+
+def draw_spectrum(figure: Figure, ripple: Ripple) -> None:
+    """Draw amplitude over order, with noise, threshold and lines."""
+    axes = figure.subplots()
+    spectrum = ripple.spectrum
+    order = spectrum["order"]
+    marks.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
+    marks.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
+    marks.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
+    for kind, colour, mark in (("order", "model", "o"), ("time", "held-out", "x"), ("either", "earlier", "s")):
+        lines = [line for line in ripple.lines if line.kind == kind and line.order <= ripple.highest]
+        if lines:
+            where = [line.order for line in lines], [line.amplitude for line in lines]
+            axes.plot(*where, mark, color=LIGHT[colour], label={"either": "order or time"}.get(kind, f"{kind} line"))
+    axes.set_ylim(bottom=0.0)
+    marks.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
+    marks.legend(figure, axes)
 
 
 def ripple(
@@ -179,13 +196,13 @@ def ripple(
     _check_sampled(shaft, record, side, size, top, angle)
     if np.isnan(per_input) and (order := _order_of_the_motion(shaft, top)):
         record, shaft = taken_of(per_input=0.5 * order)  # order 2 of the input, the main one of a gear
-    found = find_lines(shaft, lowest, top, false_alarm)
+    search = find_lines(shaft, lowest, top, false_alarm)
     revolutions = shaft.own.revolutions
-    lines = tuple(_line(each, shaft, found, record, side, size) for each in found.lines)
+    lines = tuple(_line(line, shaft, search, record, side, size) for line in search.lines)
     blind = side == "output" and size is None
-    likely = candidates(found.lines, 1.0 / revolutions, top) if blind else ()
-    remarks = [*record.remarks, *_remarks(shaft, found, record, top)]
-    remarks += _ratio_remarks(found, likely, revolutions, top, shaft) if blind else []
+    likely = candidates(search.lines, 1.0 / revolutions, top) if blind else ()
+    remarks = [*record.remarks, *_remarks(shaft, search, record, top)]
+    remarks += _ratio_remarks(search, likely, revolutions, top, shaft) if blind else []
     return Ripple(
         column=column,
         side=side,
@@ -199,8 +216,8 @@ def ripple(
         resolution=1.0 / revolutions,
         lowest=lowest,
         highest=top,
-        spectrum=_spectrum(found, recording.unit(column), false_alarm),
-        curves=_curves(shaft, found, record, recording.unit(column)),
+        spectrum=_spectrum(search, recording.unit(column), false_alarm),
+        curves=_curves(shaft, search, record, recording.unit(column)),
         remarks=tuple(remarks),
     )
 
@@ -297,13 +314,9 @@ def _spectrum(found: LineSearch, unit: str, allowed: float) -> Recording:
     """Return amplitude over order, its floor, and the amplitude at which a line is found."""
     spectrum = found.orders
     needed = spectrum.evidence_of(allowed, found.tested)
-    columns = {
-        "order": spectrum.place,
-        "amplitude": spectrum.amplitude,
-        "floor": spectrum.noise * np.sqrt(np.pi / 2.0),
-        "threshold": spectrum.noise * np.sqrt(2.0 * needed),
-    }
-    return Recording(columns, {"order": "1", "amplitude": unit, "floor": unit, "threshold": unit}, "spectrum over the angle")
+    columns = {"order": spectrum.place, "amplitude": spectrum.amplitude}
+    columns |= {"floor": spectrum.noise * np.sqrt(np.pi / 2.0), "threshold": spectrum.noise * np.sqrt(2.0 * needed)}
+    return Recording(columns, dict.fromkeys(columns, unit) | {"order": "1"}, "spectrum over the angle")
 
 
 def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Recording:
@@ -381,9 +394,9 @@ def _ratio_remarks(
             "this record does not separate; --ratio gives the right one"
         )
     elif likely and not concluded:
-        each = listed(f"{each.ratio} ({100.0 * each.share:.2g} %)" for each in likely[:3])
+        ratios = listed(f"{candidate.ratio} ({100.0 * candidate.share:.2g} %)" for candidate in likely[:3])
         remarks.append(
-            f"no ratio is concluded: the lines fit {each}; give --ratio, or turn further: orders are determined to "
+            f"no ratio is concluded: the lines fit {ratios}; give --ratio, or turn further: orders are determined to "
             f"{1.0 / revolutions:.2g} per revolution"
         )
     elif found.lines and not usable_lines(found.lines, 1.0 / revolutions):

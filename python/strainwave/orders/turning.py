@@ -51,16 +51,11 @@ class Evenly(ComparedByFields):
 
 
 def evenly(recording: Recording, names: Sequence[str], rate: float | None = None) -> Evenly:
-    """Return the named columns, each row at its place in an even time.
+    """Return the named columns, each row at its place in an even time; `rate` [Hz] is for a recording without time.
 
     Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter; where they are
     more uneven than that, rows are put on an even clock by interpolation. Where rows are missing for long, the longest stretch
     without such a gap is taken. Remarks follow.
-
-    Args:
-        recording: with or without the column `time`
-        names: of the columns wanted
-        rate: samples per second, where there is no time [Hz]
 
     Raises:
         ValueError: there are too few rows, the stamps are no even time, or both `time` and `rate` are given
@@ -79,9 +74,9 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     return _placed(columns, recording.time)
 
 
-def beginning(record: Evenly, count: int) -> Evenly:
+def beginning(record: Evenly, count: int | None) -> Evenly:
     """Return the first samples of a long record, with a remark; a shorter record itself."""
-    if len(record) <= count:
+    if count is None or len(record) <= count:
         return record
     remark = f"the first {count} of {len(record)} samples are used, which is enough for orders"
     columns = {name: values[:count] for name, values in record.columns.items()}
@@ -91,20 +86,8 @@ def beginning(record: Evenly, count: int) -> Evenly:
 def evenly_turning(
     recording: Recording, angles: Sequence[str], columns: Sequence[str], rate: float | None, count: int | None = None
 ) -> Evenly:
-    """Return columns of a recording evenly in time, of a long one the beginning; angles in rad go on over revolutions.
-
-    Args:
-        recording: with or without the column `time`
-        angles: columns with angles of shafts
-        columns: further ones, in their own units
-        rate: samples per second, where there is no time [Hz]
-        count: samples at most; all of them by default
-
-    Raises:
-        ValueError: as `evenly` and `unwrapped`
-    """
-    record = evenly(recording, [*angles, *columns], rate)
-    record = record if count is None else beginning(record, count)
+    """Return columns as `evenly`, at most `count` samples; angles in rad go on over revolutions."""
+    record = beginning(evenly(recording, [*angles, *columns], rate), count)
     turned = {name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in angles}
     return replace(record, columns={**record.columns, **turned})
 
@@ -166,8 +149,8 @@ def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
         raise ValueError(f"{len(grid)} samples lie between gaps; orders need {MIN_SAMPLES} or more: record without gaps")
     after = np.clip(np.searchsorted(when, grid), 1, len(when) - 1)
     measured = when[after] - when[after - 1] < MAX_FILLED_STEPS * step
-    found = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
-    return Evenly(found, measured, step, True, float(when[0]), tuple(remarks))
+    resampled = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
+    return Evenly(resampled, measured, step, True, float(when[0]), tuple(remarks))
 
 
 def _longest(place: NDArray[np.int_]) -> slice:

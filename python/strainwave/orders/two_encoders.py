@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments, kinematic_error, typeset
 from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
@@ -125,13 +126,10 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
     @property
     def law(self) -> kinematic_error.Fourier:
         """Law of the significant orders of the input and of the mesh, for the input angle as it was recorded."""
-        found = [each for each in self.orders if each.significant and each.shaft != "output"]
-        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MAX_HARMONICS], key=lambda each: each.order)
-        return kinematic_error.Fourier(
-            order=[each.order for each in found],
-            amplitude=[each.amplitude for each in found],
-            phase=[each.phase for each in found],
-        )
+        lines = [line for line in self.orders if line.significant and line.shaft != "output"]
+        lines = sorted(sorted(lines, key=lambda line: -line.amplitude)[:MAX_HARMONICS], key=lambda line: line.order)
+        numbers = {name: [getattr(line, name) for line in lines] for name in ("order", "amplitude", "phase")}
+        return kinematic_error.Fourier(**numbers)
 
     def _headline(self) -> str:
         orders = counted(sum(each.significant for each in self.orders), "significant order")
@@ -152,11 +150,25 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
 
     def plot(self) -> Figure:
         """Return a figure of the error over the record, its kinematic part and the residual."""
-        from strainwave.orders.pictures import draw_error
-
         with marks.new_figure(3.8) as figure:
             draw_error(figure, self)
         return figure
+
+
+def draw_error(figure: Figure, error: TransmissionError) -> None:
+    """Draw the transmission error over the record, its orders and its residual."""
+    curves = error.curves
+    timed = "time" in curves
+    x = curves["time"] if timed else curves["input_angle"] / tau
+    whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+    marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
+    marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+    marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
+    residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+    marks.label_axes(whole, "at the output", "rad")
+    along = ("time", "s") if timed else ("revolutions of the input", "1")
+    marks.label_axes(residual, "left by orders and loads", "rad", *along)
+    marks.legend(figure, whole)
 
 
 def transmission_error(
@@ -204,9 +216,7 @@ def transmission_error(
     (-100.0, [(2.0, 0.0003)])
     """
     check_recording("recording", recording)
-    wanted = np.unique(arguments.numbers("orders", orders))
-    if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
-        raise ValueError("orders must be one series of positive numbers")
+    wanted = np.unique(arguments.positive_series("orders", orders))
     false_alarm = arguments.probability("false_alarm", false_alarm)
     load = next((name for name in LOADS if name in recording), None)
     if ratio is None and isinstance(recording, Run):
@@ -217,26 +227,26 @@ def transmission_error(
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
     chosen, loads, of_weight = _with_one_weight(chosen, loads_of(pair, size), 1.0 / abs(size), load)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
-    error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
+    fit, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
+    error = sum((value * wave for value, wave in zip(fit.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
-    lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
-    frequency, damping = _stage_numbers(found, pair.record, every)
-    speeds, vibrates = _speeds_of_amplitudes(found, pair) if chosen else "", found.vibrates and not _at_one_speed(pair)
+    lost = MeasuredValue(2.0 * float(fit.values[place]), 2.0 * float(np.sqrt(fit.covariance[place, place])), "rad")
+    frequency, damping = _stage_numbers(fit, pair.record, every)
+    speeds, vibrates = _speeds_of_amplitudes(fit, pair) if chosen else "", fit.vibrates and not _at_one_speed(pair)
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
-    remarks += _stage_remarks(found, pair, every, chosen, speeds)
+    remarks += _stage_remarks(fit, pair, every, chosen, speeds)
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
         ratio=measured,
-        orders=tuple(_orders(chosen, found, false_alarm)),
+        orders=tuple(_orders(chosen, fit, false_alarm)),
         lost_motion=lost if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
         natural_frequency=frequency,
         damping_ratio=damping,
-        noise=float(np.sqrt(np.mean(found.residual**2))),
+        noise=float(np.sqrt(np.mean(fit.residual**2))),
         revolutions=float(np.ptp(pair.input)) / tau,
-        curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
+        curves=_curves(pair, whole - whole.mean(), error, fit.residual, every),
         remarks=(*pair.record.remarks, *remarks),
         speeds=speeds,
         vibrates=bool(speeds) and vibrates,
@@ -308,18 +318,17 @@ def _regressed(
     problem = StageProblem(
         angle=_means(pair.input / ratio, every),
         error=_means(pair.input / ratio - pair.output, every),
-        orders=np.stack([_means(each, every) for each in shapes], axis=1)
+        orders=np.stack([_means(shape, every) for shape in shapes], axis=1)
         if shapes
         else np.zeros((len(pair.input) // every, 0)),
-        loads=np.stack([_means(each, every) for each in loads], axis=1),
+        loads=np.stack([_means(load, every) for load in loads], axis=1),
     )
     return problem.regress(dynamic=dynamic), every
 
 
 def _means(series: Array, every: int) -> Array:
     """Return means of so many neighbours each; the rest at the end is left out."""
-    means: Array = series[: len(series) // every * every].reshape(-1, every).mean(axis=1)
-    return means
+    return np.asarray(series[: len(series) // every * every].reshape(-1, every).mean(axis=1))
 
 
 def _mean_of(fastest: float) -> int:
@@ -354,16 +363,12 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     """Return the twist per torque or current, fitted with direction, speed and acceleration of the input."""
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
-    reach = reach_of(len(twist))
-    unit = LOADS[load]
+    unit, speed = LOADS[load], pair.speed
     driven = convert(pair.record.columns[load], recording.unit(load), unit)
-    speed = pair.speed
-    acceleration = smooth_speed(speed, reach)
-    loads = np.stack([driven, direction(speed), speed, acceleration], axis=1)
-    found = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
-    return MeasuredValue(
-        float(found.values[0]), float(np.sqrt(found.covariance[0, 0])), f"rad/({unit})" if "." in unit else f"rad/{unit}"
-    )
+    loads = np.stack([driven, direction(speed), speed, smooth_speed(speed, reach_of(len(twist)))], axis=1)
+    fit = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
+    per_load = f"rad/({unit})" if "." in unit else f"rad/{unit}"
+    return MeasuredValue(float(fit.values[0]), float(np.sqrt(fit.covariance[0, 0])), per_load)
 
 
 def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[MeasuredValue | None, MeasuredValue | None]:

@@ -201,23 +201,39 @@ def compensate(
     arguments.one_of("encoder", encoder, ("input", "output"))
     arguments.whole("members", members, MIN_MEMBERS, MAX_MEMBERS)
     arguments.one_of("goal", goal, ("position", "speed", "smooth", "torque"))
-    _refuse_unused(goal, travel=travel, torque=torque)
+    for name, value in (("travel", travel), ("torque", torque)):
+        if value is not None and goal != GOAL_OF_OPTION[name]:
+            raise ValueError(
+                f"{name} = {shortened(value)} is not used by the goal {goal}, only by {GOAL_OF_OPTION[name]}; leave it out"
+            )
     plant = Plant.read(gear_set, period, delay)
     travel = USUAL_TRAVEL if travel is None else travel
-    if goal == "torque":
-        torque = _wanted_torque(plant, torque)
-        gear_set = _against_stop(gear_set, plant, torque)
+    if goal == "torque":  # against a spring to the ground, with the inertia of the load
+        largest = plant.limit / plant.actuation_per_torque * abs(plant.ratio)
+        torque = TORQUE_SHARE * largest if torque is None else arguments.number("torque", torque, "N.m", "(]", 0.0, largest)
+        twist = float(np.abs(plant.drive.gear.twist(np.array([0.0, torque])))[-1])
+        stop = loads.TorsionSpring(inertia=gear_set.load.inertia, stiffness=STOP_STIFFNESS_RATIO * torque / twist)
+        gear_set = gear_set.with_parts(load=stop, source="goal torque: a stop in place of the load")
         plant = replace(plant, drive=plant.drive.replace(load=gear_set.load))
         travel = torque / gear_set.load.stiffness
 
     def goal_at(pace: float) -> Goal:
         return goal_of(goal, plant, travel, speed, pace)
 
-    wanted = _long_enough(goal_at(1.0), plant)
+    wanted = goal_at(1.0)
+    if wanted.command.duration < MIN_SAMPLES * plant.period:
+        raise ValueError(
+            f"the motion lasts {wanted.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
+            "take a lower speed, a longer travel or a shorter period"
+        )
     draws, anew = (_drawn(gear_set, plant, members, each, known_load=goal == "torque") for each in (seed, seed + 1))
     with in_turn(progress) as turn:
         cascades = _cascades(plant, wanted, draws, encoder, turn)
-        best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, turn)
+        best, others = cascades[0], list[Judged]()
+        for candidate in candidates(plant, [cascade.candidate.setting for cascade in cascades], wanted, draws):
+            turn(candidate.name)
+            others.append(judged(candidate, wanted, draws, plant))
+        others.sort(key=lambda result: result.median(wanted.judged_by))
         chosen = _chosen(best, others, wanted)
         before, after = _judged_anew(best, chosen, wanted, anew, plant)
         remarks = list(_remarks(gear_set, plant, wanted, best))
@@ -238,32 +254,6 @@ def compensate(
         )
 
 
-def _refuse_unused(goal: str, **options: float | None) -> None:
-    """
-    Raises:
-        ValueError: a number is given that the goal does not use
-    """
-    for name, value in options.items():
-        if value is not None and goal != GOAL_OF_OPTION[name]:
-            raise ValueError(
-                f"{name} = {shortened(value)} is not used by the goal {goal}, only by {GOAL_OF_OPTION[name]}; leave it out"
-            )
-
-
-def _long_enough(goal: Goal, plant: Plant) -> Goal:
-    """Return a goal whose motion has enough periods of the controller.
-
-    Raises:
-        ValueError: it has not
-    """
-    if goal.command.duration < MIN_SAMPLES * plant.period:
-        raise ValueError(
-            f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
-            "take a lower speed, a longer travel or a shorter period"
-        )
-    return goal
-
-
 def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None]) -> list[Judged]:
     """Return the best cascade of each encoder that the controller sees, the better one first.
 
@@ -271,31 +261,16 @@ def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str
         ValueError: no run under the better one came to its end
     """
     encoders = ("input", "output") if encoder == "output" else ("input",)
-    found = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
-    found.sort(key=lambda each: each.upper(goal.judged_by))
-    best = found[0]
+    cascades = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
+    cascades.sort(key=lambda cascade: cascade.upper(goal.judged_by))
+    best = cascades[0]
     if best.failures == len(best.figures[goal.judged_by]):
-        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{_advice(best, goal, plant)}")
-    return found
-
-
-def _advice(best: Judged, goal: Goal, plant: Plant) -> str:
-    """Return what to do if the motor is at its limit; nothing if it is not."""
-    if best.reason != AT_LIMIT:
-        return ""
-    lower = " or ".join(["speed", *(name for name, user in GOAL_OF_OPTION.items() if user == goal.name)])
-    return f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
-
-
-def _judged_candidates(
-    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], turn: Callable[[str], None]
-) -> list[Judged]:
-    """Return all compensations of these cascades, best first."""
-    others = []
-    for candidate in candidates(plant, [each.candidate.setting for each in cascades], goal, draws):
-        turn(candidate.name)
-        others.append(judged(candidate, goal, draws, plant))
-    return sorted(others, key=lambda each: each.median(goal.judged_by))
+        advice = ""
+        if best.reason == AT_LIMIT:
+            lower = " or ".join(["speed", *(name for name, user in GOAL_OF_OPTION.items() if user == goal.name)])
+            advice = f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
+        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{advice}")
+    return cascades
 
 
 def _judged_anew(best: Judged, chosen: Judged, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> tuple[Judged, Judged]:
@@ -313,24 +288,6 @@ def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int, known_load:
     ideal = gear_set.with_parts(motor=plant.drive.motor, control=plant.drive.control, source="current loop")
     draws = drawn_gears(ideal, members, seed)
     return {path: values for path, values in draws.items() if not (known_load and path.startswith("load."))}
-
-
-def _wanted_torque(plant: Plant, torque: float | None) -> float:
-    """Return the torque of the output from end to end [N.m], that is stated or usual.
-
-    Raises:
-        ValueError: it is not positive, or exceeds the largest torque of the motor times the ratio
-    """
-    largest = plant.limit / plant.actuation_per_torque * abs(plant.ratio)
-    return TORQUE_SHARE * largest if torque is None else arguments.number("torque", torque, "N.m", "(]", 0.0, largest)
-
-
-def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
-    """Return a set whose load is a spring to the ground, with the inertia of its load."""
-    twist = float(np.abs(plant.drive.gear.twist(np.array([0.0, torque])))[-1])
-    load: Any = gear_set.load
-    stop = loads.TorsionSpring(inertia=load.inertia, stiffness=STOP_STIFFNESS_RATIO * torque / twist)
-    return gear_set.with_parts(load=stop, source="goal torque: a stop in place of the load")
 
 
 def best_cascade(
@@ -378,12 +335,6 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: f
 
 def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
     """Yield what was assumed, and what cannot be gained."""
-    yield from _of_the_drive(gear_set, plant, goal)
-    yield from _of_effects(gear_set, plant)
-    yield from _of_the_cascade(plant, goal, best)
-
-
-def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
     if not plant.drive.motor.inertia:
@@ -397,22 +348,16 @@ def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
         yield f"the load is a stop of {load.stiffness:.3g} N·m/rad, against which the torque goes from 0 to {highest:.3g} N·m"
     if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
-
-
-def _of_effects(gear_set: GearSet, plant: Plant) -> Iterator[str]:
     for effect in EFFECTS:
         if not has_effect(plant.drive.gear, effect):
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
         elif too_steep(plant, effect):
             yield f"the {effect} is too steep to be fed forward: its slope times the ratio reaches 1"
         elif names := assumed_numbers(gear_set, effect):
-            spread = (
-                f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}more or less of it by a factor of up to 1.3"
-            )
+            numbers = _all_of(gear_set, effect)
+            unknown = any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in numbers)
+            spread = f"{'any phase and ' if unknown else ''}more or less of it by a factor of up to 1.3"
             yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
-
-
-def _of_the_cascade(plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
     margins = margins_of(plant, best.candidate.setting)
     bandwidth, modulus = margins.position.crossover, margins.modulus
     if modulus and bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
@@ -435,10 +380,6 @@ def assumed_numbers(gear_set: GearSet, effect: str) -> str:
 def numbers_of(gear_set: GearSet, effect: str) -> list[Parameter]:
     """Return the numbers that an effect has more or less of, those that are zero left out."""
     return [each for each in _all_of(gear_set, effect) if each.value and scales(each.path, each.unit)]
-
-
-def _has_unknown_phase(gear_set: GearSet, effect: str) -> bool:
-    return any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in _all_of(gear_set, effect))
 
 
 def _all_of(gear_set: GearSet, effect: str) -> list[Parameter]:

@@ -101,8 +101,8 @@ def _settling(time: Array, error: Array, band: float) -> Array:
     """Return the time after which an error stays within a band; infinite if it ends outside."""
     outside = ~(np.abs(error) <= band)
     after_last = error.shape[1] - np.argmax(outside[:, ::-1], axis=1)
-    found = np.where(outside.any(axis=1), np.append(time, np.inf)[after_last], 0.0)
-    return np.where(np.isnan(error).any(axis=1), np.nan, found)
+    settled = np.where(outside.any(axis=1), np.append(time, np.inf)[after_last], 0.0)
+    return np.where(np.isnan(error).any(axis=1), np.nan, settled)
 
 
 def to_and_fro(travel: float, speed: float) -> Scenario:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, overload
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,9 +61,7 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, rat
         plant: in deviations from the command
         gains: K, with that of the input before, if it is a state
         measured: index of the state that is measured, the input angle
-        noise: what the filter does not know
         ratio: input angle per output angle
-        limit: of the actuation
 
     Raises:
         ValueError: the law has more states than a `StateSpace`
@@ -101,14 +98,8 @@ def _law(
 ) -> control.StateSpace:
     """Return the law whose states are the estimates before each measurement and the command half a period later.
 
-    Args:
-        closed: step of the estimates under the feedback
-        now: effect of the actuation on them
-        feedback: of the estimates
-        corrects: gain M of the filter
-        jumps: by what the estimates fall, per jump of the command; the angle measured is one of them, times the ratio
-        period: [s]
-        limit: of the actuation
+    `closed` is their step under the feedback, `now` the effect of the actuation on them, `corrects` the gain M of the filter.
+    They fall by `jumps` per jump of the command; the angle measured is one of them, times the ratio.
     """
     size, half = len(closed), 0.5 * period
     seen = (jumps != 0.0).astype(float)
@@ -130,35 +121,6 @@ def _law(
         tracking=np.append(now / period, 0.0).tolist(),
         limit=limit,
     )
-
-
-@overload
-def lqg(
-    drive: GearSet | Drive | str | Path,
-    *,
-    period: float = ...,
-    delay: float = ...,
-    error: float = ...,
-    effort: float | None = ...,
-    speed_error: float | None = ...,
-    encoder: Literal["output"] = ...,
-) -> control.StateFeedback: ...
-
-
-@overload
-def lqg(
-    drive: GearSet | Drive | str | Path,
-    *,
-    period: float = ...,
-    delay: float = ...,
-    error: float = ...,
-    effort: float | None = ...,
-    speed_error: float | None = ...,
-    encoder: Literal["input"],
-    resolution: float = ...,
-    torque_noise: float | None = ...,
-    disturbance_rate: float | None = ...,
-) -> control.StateSpace: ...
 
 
 def lqg(
@@ -234,17 +196,13 @@ def lqg(
         return with_filter(late, late.gains(cost, limit), measured, noise, plant.ratio, plant.limit)
     gains = linear.measured_by_encoders().held(plant.period).gains(cost, limit)
     _check_with_delay(linear, gains, plant)
-    return _state_feedback(plant, dict(zip(linear.states, gains.tolist(), strict=True)))
-
-
-def _state_feedback(plant: Plant, gains: Mapping[str, float]) -> control.StateFeedback:
-    """Return the law of both shafts that has these gains of the states."""
-    of_twist = gains["transmission_error"]
+    by_state = dict(zip(linear.states, gains.tolist(), strict=True))
+    of_twist = by_state["transmission_error"]
     return control.StateFeedback(
-        input_angle=gains["input_angle"] + of_twist / plant.ratio,
-        input_speed=gains["input_speed"],
+        input_angle=by_state["input_angle"] + of_twist / plant.ratio,
+        input_speed=by_state["input_speed"],
         output_angle=-of_twist,
-        output_speed=gains["output_speed"],
+        output_speed=by_state["output_speed"],
         limit=plant.limit,
     )
 
@@ -252,22 +210,17 @@ def _state_feedback(plant: Plant, gains: Mapping[str, float]) -> control.StateFe
 def _noise(plant: Plant, resolution: float, torque_noise: float | None, disturbance_rate: float | None) -> Noise:
     """Return the noise of an encoder and of the torque, in the unit of the actuation."""
     per_torque, largest = plant.actuation_per_torque, plant.limit / plant.actuation_per_torque
-    return Noise(
-        angle=arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0),
-        effort=per_torque * _or_share("torque_noise", torque_noise, "N.m", NOISE_SHARE * largest),
-        effort_rate=per_torque * _or_share("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", RATE_SHARE * largest),
-    )
-
-
-def _or_share(name: str, value: float | None, unit: str, usual: float) -> float:
-    return usual if value is None else arguments.number(name, value, unit, low=0.0)
+    angle = arguments.number("resolution", resolution, "rad", low=0.0) / np.sqrt(12.0)
+    torque, rate = NOISE_SHARE * largest, RATE_SHARE * largest
+    if torque_noise is not None:
+        torque = arguments.number("torque_noise", torque_noise, "N.m", low=0.0)
+    if disturbance_rate is not None:
+        rate = arguments.number("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", low=0.0)
+    return Noise(angle=angle, effort=per_torque * torque, effort_rate=per_torque * rate)
 
 
 def _check_with_delay(linear: LinearPlant, gains: Array, plant: Plant) -> None:
-    """
-    Raises:
-        ValueError: the loop is not stable where the output comes late
-    """
+    """Refuse gains whose loop is not stable where the output comes late."""
     step, driven = linear.held(plant.period, plant.delay).extended
     loop = step - np.outer(driven, np.append(gains, 0.0))
     radius = float(np.abs(np.linalg.eigvals(loop)).max())

@@ -258,7 +258,10 @@ class Loops:
         at_output = np.append(linear.output, np.zeros(3))
         output_held, integral, filtered = unit[count:]
         per_torque = sampled.compensation.actuation_per_torque
-        momentum, passed = _observing(sampled.compensation.observer, plant.period)
+        momentum, passed, observer = 0.0, 0.0, sampled.compensation.observer
+        if isinstance(observer, compensation.DisturbanceObserver):  # what its filter has per speed, and passes in a period
+            momentum = observer.bandwidth * observer.inertia
+            passed = float(-np.expm1(-observer.bandwidth * plant.period))
         actuated = np.append(held.now, np.zeros(3)) + output_held + passed / per_torque * filtered
         actuation = law.speed_integral * integral + (passed > 0.0) * per_torque * (filtered - momentum * speed)
         return cls(
@@ -301,20 +304,13 @@ class Loops:
         highest = np.pi / self.period
         whole = np.geomspace(LOWEST_SHARE * highest, highest, FREQUENCY_COUNT, endpoint=False)
         peaks = [each * np.geomspace(0.8, 1.25, FREQUENCIES_OF_PEAK) for each in self.vibrations if each]
-        found = np.unique(np.concatenate([whole, *peaks]))
-        return np.asarray(found[found < highest])
+        frequencies = np.unique(np.concatenate([whole, *peaks]))
+        return np.asarray(frequencies[frequencies < highest])
 
     def _response(self, transition: Array, given: NDArray[Any], read: Array, at: Array) -> Complex:
         shift = np.exp(1j * at * self.period)[:, np.newaxis, np.newaxis] * np.eye(len(transition))
         given = np.broadcast_to(given, (len(at), len(transition)))
         return np.asarray(np.linalg.solve(shift - transition, given[..., np.newaxis])[..., 0] @ read)
-
-
-def _observing(observer: Any, period: float) -> tuple[float, float]:
-    """Return the momentum per speed of a disturbance observer, and what its filter passes in a period; 0 of any other."""
-    if not isinstance(observer, compensation.DisturbanceObserver):
-        return 0.0, 0.0
-    return observer.bandwidth * observer.inertia, float(-np.expm1(-observer.bandwidth * period))
 
 
 def _free(held: HeldPlant, speed: Array, momentum: float, passed: float) -> Array:
