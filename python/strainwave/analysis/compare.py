@@ -53,7 +53,6 @@ class Agreement(Statement):
     samples: int
 
     def _headline(self) -> str:
-        """The agreement in one line."""
         related = "one is constant" if self.correlation is None else f"correlation {self.correlation:.6g}"
         sizes = f"rms {self.rms:.4g} {self.unit}, largest {self.largest:.4g} {self.unit} at t = {self.time:.4g} s"
         return f"{self.name}: {sizes}, {related}"
@@ -62,32 +61,19 @@ class Agreement(Statement):
 def agreements(first: Recording, second: Recording, names: Sequence[str] | None) -> list[Agreement]:
     """Return the agreement of each column that both recordings have, or of the named ones; see `compare`."""
     time, other = first.time, second.time
-    wanted = _columns(first, second, names)
+    if names is None:
+        wanted = [name for name in first.names if name in second and name != "time"]
+        if not wanted:
+            raise ValueError(f"the recordings have no column in common: {listed(first.names)}; and {listed(second.names)}")
+    elif not (wanted := arguments.names("names", names)) or "time" in wanted:
+        raise ValueError(f"names = {shortened(wanted)} must name columns besides the time; there are {listed(first.names)}")
     common = (time >= other[0]) & (time <= other[-1])
     if not common.any():
-        raise ValueError(f"the recordings have no time in common: {_span(time)} and {_span(other)}; {_remedy(time, other)}")
+        apart = time[-1] < other[0] or other[-1] < time[0]
+        remedy = "shift the time of one" if apart else "no sample of the first lies within the second, so exchange them"
+        one, two = (f"{of[0]:g} s to {of[-1]:g} s" for of in (time, other))
+        raise ValueError(f"the recordings have no time in common: {one} and {two}; {remedy}")
     return [_agreement(name, first, second, common) for name in wanted]
-
-
-def _columns(first: Recording, second: Recording, names: Sequence[str] | None) -> list[str]:
-    if names is not None:
-        if not (wanted := arguments.names("names", names)) or "time" in wanted:
-            raise ValueError(f"names = {shortened(wanted)} must name columns besides the time; there are {listed(first.names)}")
-        return wanted
-    shared = [name for name in first.names if name in second and name != "time"]
-    if not shared:
-        raise ValueError(f"the recordings have no column in common: {listed(first.names)}; and {listed(second.names)}")
-    return shared
-
-
-def _span(time: Array) -> str:
-    return f"{time[0]:g} s to {time[-1]:g} s"
-
-
-def _remedy(time: Array, other: Array) -> str:
-    """Return the remedy if no sample of the first lies within the second."""
-    apart = time[-1] < other[0] or other[-1] < time[0]
-    return "shift the time of one" if apart else "no sample of the first lies within the second, so exchange them"
 
 
 def _agreement(name: str, first: Recording, second: Recording, common: NDArray[np.bool_]) -> Agreement:
@@ -100,7 +86,10 @@ def _agreement(name: str, first: Recording, second: Recording, common: NDArray[n
         raise ValueError(f"{error}; {others}" if name in second else str(error)) from None
     ours = first[name][common]
     scale = max(np.abs(ours).max(), np.abs(theirs).max()) or 1.0
-    ours, theirs = ours / scale, _read_off(second.time, theirs / scale, at)
+    ours, theirs = ours / scale, theirs / scale
+    if not np.array_equal(second.time, at):  # between samples on a straight line
+        with np.errstate(over="ignore", invalid="ignore"):  # a jump within no time; what is not finite is refused below
+            theirs = np.interp(at, second.time, theirs)
     difference = theirs - ours
     worst = int(np.argmax(np.abs(difference)))
     with np.errstate(over="ignore"):
@@ -108,12 +97,6 @@ def _agreement(name: str, first: Recording, second: Recording, common: NDArray[n
     if not isfinite(largest):
         raise ValueError(f"column {quoted(name)} differs by more than the largest number there is, at t = {at[worst]:g} s")
     return Agreement(name, unit, rms, largest, float(at[worst]), _correlation(ours, theirs), len(at))
-
-
-def _read_off(time: Array, values: Array, at: Array) -> Array:
-    """Values between samples on a straight line, those at samples as they are."""
-    with np.errstate(over="ignore", invalid="ignore"):  # a jump within no time; what is not finite is refused by the caller
-        return values if np.array_equal(time, at) else np.interp(at, time, values)
 
 
 def _correlation(first: Array, second: Array) -> float | None:
@@ -165,7 +148,6 @@ class Difference(Statement):
         return change if isfinite(change) else None
 
     def _headline(self) -> str:
-        """The difference in one line."""
         unit = "" if self.unit in ("", "1") else f" {self.unit}"
         first, second = (text if value is None else text + unit for text, value in zip(self.texts, self._values, strict=True))
         parts = [f"{100.0 * self.change:+.3g} %"] if self.change is not None else []
@@ -194,18 +176,15 @@ def differences(first: Model, second: Model) -> list[Difference]:
     ours, theirs = _parts(first), _parts(second)
     if isinstance(first, Gear) or isinstance(second, Gear):
         return _between("gear", ours["gear"], theirs["gear"])
-    found = [each for name in ours for each in _between(name, ours[name], theirs[name])]
-    if isinstance(first, GearSet) and isinstance(second, GearSet):
-        found = [_with_sigma(each, first, second) for each in found] + _ratings(first, second)
-    return found
-
-
-def _with_sigma(each: Difference, first: GearSet, second: GearSet) -> Difference:
-    """Return a difference of numbers with its standard deviation, if both sets state that of theirs."""
-    if isinstance(each.first, str | None) or isinstance(each.second, str | None):
-        return each
-    one, other = (of.sources[each.path].sigma(value) for of, value in ((first, each.first), (second, each.second)))
-    return each if one is None or other is None else replace(each, sigma=hypot(one, other))
+    differing = [difference for name in ours for difference in _between(name, ours[name], theirs[name])]
+    if not (isinstance(first, GearSet) and isinstance(second, GearSet)):
+        return differing
+    for place, each in enumerate(differing):
+        if isinstance(each.first, float | int) and isinstance(each.second, float | int):
+            one, other = first.sources[each.path].sigma(each.first), second.sources[each.path].sigma(each.second)
+            if one is not None and other is not None:
+                differing[place] = replace(each, sigma=hypot(one, other))
+    return differing + _ratings(first, second)
 
 
 def _parts(model: Model) -> dict[str, Any]:
@@ -219,15 +198,15 @@ def _between(path: str, first: Any, second: Any) -> list[Difference]:
         return [Difference(path, one, other)]
     if first is None:
         return []
-    found: list[Difference] = []
-    for each in parameters(first):
-        one, other = getattr(first, each.name), getattr(second, each.name)
-        for place, pair in _pairs(f"{path}.{each.name}", one, other):
+    differing: list[Difference] = []
+    for number in parameters(first):
+        one, other = getattr(first, number.name), getattr(second, number.name)
+        for place, pair in _pairs(f"{path}.{number.name}", one, other):
             if pair[0] != pair[1]:
-                found.append(Difference(place, *pair, each.unit or ""))
+                differing.append(Difference(place, *pair, number.unit or ""))
     for part in parts(first):
-        found += _between(f"{path}.{part.name}", getattr(first, part.name), getattr(second, part.name))
-    return found
+        differing += _between(f"{path}.{part.name}", getattr(first, part.name), getattr(second, part.name))
+    return differing
 
 
 def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any]]]:
@@ -239,15 +218,15 @@ def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any
 
 def _ratings(first: GearSet, second: GearSet) -> list[Difference]:
     """The ratings that differ, in the unit of the first set."""
-    found = []
+    differing = []
     for name in [*first.ratings, *(name for name in second.ratings if name not in first.ratings)]:
-        given = [each.ratings.get(name) for each in (first, second)]
-        unit = next(each.unit for each in given if each is not None)
+        ratings = [of.ratings.get(name) for of in (first, second)]
+        unit = next(rating.unit for rating in ratings if rating is not None)
         with at(f"ratings.{name}:"):
-            one, other = (None if each is None else float(each.to(unit).value) for each in given)
+            one, other = (None if rating is None else float(rating.to(unit).value) for rating in ratings)
         if one != other:
-            found.append(Difference(f"ratings.{name}", one, other, unit))
-    return found
+            differing.append(Difference(f"ratings.{name}", one, other, unit))
+    return differing
 
 
 @overload

@@ -64,7 +64,11 @@ def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
         times = f"sampling every {sampled.period:g} s with a delay of {sampled.delay:g} s"
         yield "control", sampled.law, f"control: {times} is left out, as is a compensation"
     whole = {field["name"]: getattr(drive.sensors, field["name"]) for field in drive.sensors.fields}
-    smooth = {name: _smooth(part) for name, part in whole.items()}
+    smooth = dict(whole)
+    for name, part in whole.items():
+        while isinstance(part, (sensor.Noisy, sensor.Quantised)):
+            part = part.law
+        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder) else part
     if changed := [name for name, part in whole.items() if smooth[name] is not part]:
         yield (
             "sensors",
@@ -74,13 +78,6 @@ def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
     for name, left_out in (("meter", "energy is not measured"), ("thermal", "the drive does not warm up")):
         if not isinstance(getattr(drive, name), kind := type(getattr(Drive(), name))):
             yield name, kind(), f"{name}: {left_out}"
-
-
-def _smooth(part: Any) -> Any:
-    """Return a sensor without noise, steps and counts."""
-    while isinstance(part, (sensor.Noisy, sensor.Quantised)):
-        part = part.law
-    return sensor.Ideal() if isinstance(part, sensor.Encoder) else part
 
 
 def state_within(plain: Drive, state: State) -> State:
@@ -153,8 +150,7 @@ class Linearisation(ComparedByFields, Pictured):
     @property
     def eigenfrequencies(self) -> Array:
         """Return the undamped natural frequency of each pole, its distance from 0 [rad/s], shape (n,)."""
-        size: Array = np.abs(self.poles)
-        return size
+        return np.asarray(np.abs(self.poles))
 
     @property
     def damping_ratios(self) -> Array:
@@ -234,8 +230,7 @@ class Linearisation(ComparedByFields, Pictured):
             rate = self.inputs.index("command_rate")
             b, d = b + at * self.B[:, rate], d + at * self.D[row, rate]
         states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
-        answer: Complex = states @ self.C[row] + d[..., 0]
-        return answer
+        return np.asarray(states @ self.C[row] + d[..., 0])
 
     def _headline(self) -> str:
         unstable = int((self.poles.real > MIN_GROWTH_SHARE * np.abs(self.poles)).sum())
@@ -320,13 +315,17 @@ def linearise(
     by_numbers, by_inputs = np.split((0.5 * slopes[0].T + 0.5 * slopes[1].T)[rows], [count], axis=1)
     by_inputs = by_inputs[:, _COLUMNS]
     kept = _moving(state, layout)
-    by_numbers = by_numbers @ _tied(state, layout)
+    tied = np.eye(layout.count)
+    if state.output_slip_direction == 0.0:  # while the output sticks, the transmission error goes with the input
+        tied[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
+    by_numbers = by_numbers @ tied
     while dead := [place for place in kept if not _matters(place, by_numbers, kept)]:
         kept = [place for place in kept if place not in dead]
     (a, c), (b, d) = np.split(by_numbers[:, kept], [count]), np.split(by_inputs, [count])
-    known = layout.units | units(drive, shown.values()) | _input_units(drive)
+    of_inputs = {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
+    all_units = layout.units | units(drive, shown.values()) | of_inputs
     states = tuple(layout.names[place] for place in kept)
-    chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
+    chosen = {name: all_units[name] for name in (*states, *INPUTS, *shown)}
     return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen, notes)
 
 
@@ -365,9 +364,8 @@ def modes(drive: Drive) -> dict[str, Array]:
 
 def _frequencies(drive: Drive) -> Array:
     """Return the frequencies of the pairs of poles that vibrate [rad/s]."""
-    linear = linearise(drive, drive.rest())
-    found: Array = np.sort(linear.poles.imag[linear.poles.imag > 0.0])
-    return found
+    poles = linearise(drive, drive.rest()).poles
+    return np.asarray(np.sort(poles.imag[poles.imag > 0.0]))
 
 
 def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:
@@ -388,13 +386,13 @@ def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array
             .numbers
         )
 
-    found = state.numbers
+    numbers = state.numbers
     for way in (1.0, -2.0, 1.0):
         twist += way * little
-        found = _core.advance_hysteresis(drive, found, twist)
+        numbers = _core.advance_hysteresis(drive, numbers, twist)
         if at_rest:
-            found = _core.relaxed(drive, passing(found, way), inputs, QUASI_STATIC_TIME)
-    return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
+            numbers = _core.relaxed(drive, passing(numbers, way), inputs, QUASI_STATIC_TIME)
+    return passing(_core.advance_hysteresis(drive, numbers, twist - 0.5 * sense * little), sense)
 
 
 def _moving(state: State, layout: StateLayout) -> list[int]:
@@ -407,22 +405,10 @@ def _moving(state: State, layout: StateLayout) -> list[int]:
     return [place for place, name in enumerate(layout.names[: layout.count]) if name.partition(".")[0] not in stuck]
 
 
-def _tied(state: State, layout: StateLayout) -> Array:
-    """The numbers by those that move, columns: while the output sticks, the transmission error goes with the input."""
-    moved = np.eye(layout.count)
-    if state.output_slip_direction == 0.0:
-        moved[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
-    return moved
-
-
 def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
     """True if another number or an output depends on a number."""
     others = [row for row in kept if row != place]
     return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
-
-
-def _input_units(drive: Drive) -> dict[str, str]:
-    return {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
 
 
 def _place(name: str, names: tuple[str, ...], kind: str) -> int:

@@ -110,11 +110,7 @@ def output_torque(
 
 
 def _angles(input_angle: ArrayLike, output_angle: ArrayLike) -> Array:
-    """Return the angles of both shafts, shape (2, n).
-
-    Raises:
-        ValueError: they are not finite, or not equally many
-    """
+    """Return the angles of both shafts, shape (2, n)."""
     of_input = np.atleast_1d(arguments.numbers("input_angle", input_angle))
     of_output = np.atleast_1d(arguments.numbers("output_angle", output_angle))
     if of_input.ndim != 1 or of_input.shape != of_output.shape:
@@ -128,10 +124,7 @@ def _angles(input_angle: ArrayLike, output_angle: ArrayLike) -> Array:
 
 
 def check_static(gear: Gear, name: str) -> None:
-    """
-    Raises:
-        ValueError: the twist alone does not determine the torque of a gear
-    """
+    """"""
     for part, plain in (("structure", structure.Lumped), ("stiffness_variation", variation.Constant)):
         if not isinstance(found := getattr(gear, part), plain):
             raise ValueError(

@@ -77,12 +77,7 @@ class FrequencyResponse(ComparedByFields, Pictured):
     units: dict[str, str]
 
     def plot(self, output: str = "output_angle") -> Figure:
-        """Return the Bode diagram of an output: magnitude [unit of the output / unit of the input] and phase [deg].
-
-        Raises:
-            ValueError: there is no such output
-            TypeError: the name is no text
-        """
+        """Return the Bode diagram of an output: magnitude [unit of the output / unit of the input] and phase [deg]."""
         from strainwave.analysis.plots import Response, bode_figure
         from strainwave.typeset import quantity
 

@@ -149,7 +149,10 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
     held_unit = _held_out(runs.unit, chance)
     held_condition = _held_out(runs.condition, chance)
     held_run = chance.random(len(runs.label)) < HELD_OUT_SHARE
-    shuffled = [_shuffled(runs, chance) for _ in range(CHANCE_SHUFFLES)]
+    # each run has the label of the same run of another unit, drawn once for a unit
+    group, inverse = np.unique(runs.unit, return_inverse=True)
+    first = np.array([np.flatnonzero(inverse == place)[0] for place in range(len(group))])
+    shuffled = [np.asarray(chance.permutation(runs.label[first])[inverse]) for _ in range(CHANCE_SHUFFLES)]
     answers = _answers(runs, runs.label, ~held_unit, held_unit, seed)
     truth, units = runs.label[held_unit], runs.unit[held_unit]
     labels = tuple(np.unique(runs.label).tolist())
@@ -168,7 +171,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
         detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
         classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
         false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
-        confusion=_confusion(truth, answers, labels),
+        confusion=np.array([[np.sum((truth == row) & (answers == column)) for column in labels] for row in labels], np.int64),
         labels=labels,
     )
 
@@ -187,14 +190,6 @@ def _held_out(group: NDArray[np.int64], chance: np.random.Generator) -> NDArray[
     groups = np.unique(group)
     held = chance.permutation(groups)[: max(1, round(HELD_OUT_SHARE * len(groups)))]
     return np.isin(group, held)
-
-
-def _shuffled(runs: LabelledRuns, chance: np.random.Generator) -> Labels:
-    """Labels of other units: each run has the label of the same run of another unit, drawn once for a unit."""
-    units, inverse = np.unique(runs.unit, return_inverse=True)
-    first = np.array([np.flatnonzero(inverse == place)[0] for place in range(len(units))])
-    drawn = chance.permutation(runs.label[first])
-    return np.asarray(drawn[inverse])
 
 
 def _chance(runs: LabelledRuns, shuffled: list[Labels], held_unit: NDArray[np.bool_], seed: int) -> Score:
@@ -239,11 +234,6 @@ def _score(truth: Labels, answers: Labels, units: NDArray[np.int64], seed: int) 
     return Score(balanced_accuracy(truth, answers), float(low), float(high), len(truth), len(members))
 
 
-def _confusion(truth: Labels, answers: Labels, labels: tuple[str, ...]) -> NDArray[np.int64]:
-    counts = [[int(np.sum((truth == row) & (answers == column))) for column in labels] for row in labels]
-    return np.array(counts, dtype=np.int64)
-
-
 @dataclass(frozen=True)
 class DetectorRuns:
     """Differences of physical features from those of the same unit and condition at its first stage.
@@ -261,9 +251,6 @@ class DetectorRuns:
 
         The statistic is the sum of squared differences over their standard deviation in healthy training runs; its threshold is
         exceeded by the share `FALSE_ALARM` of these.
-
-        Raises:
-            ValueError: there are too few healthy training runs
         """
         used = self.healthy & train
         if used.sum() < MIN_HEALTHY_RUNS:
@@ -273,16 +260,13 @@ class DetectorRuns:
         sigma = np.sqrt(_mean_square(self.difference[used], axis=0))
         kept = sigma > 0.0
         statistic = _mean_square(self.difference[:, kept] / sigma[kept], axis=1)
-        alarms: NDArray[np.bool_] = statistic > np.quantile(statistic[used], 1.0 - FALSE_ALARM)
-        return alarms
+        return np.asarray(statistic > np.quantile(statistic[used], 1.0 - FALSE_ALARM))
 
 
 def _mean_square(values: Array, axis: int) -> Array:
     """Return the mean of the squares of numbers, those that are not-a-number left out; 0 if there are none."""
     there = ~np.isnan(values)
-    total = np.sum(np.where(there, values, 0.0) ** 2, axis=axis)
-    mean: Array = total / np.maximum(there.sum(axis=axis), 1)
-    return mean
+    return np.asarray(np.sum(np.where(there, values, 0.0) ** 2, axis=axis) / np.maximum(there.sum(axis=axis), 1))
 
 
 def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, DetectorRuns]:
@@ -291,9 +275,6 @@ def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, Detec
     First stages and failed runs are left out.
 
     A run counts as faulty if its unit has a fault and the severity at its stage is above 0.
-
-    Raises:
-        ValueError: the folder has no finished data set, one stage only, or too many runs
     """
     target = DatasetFolder(Path(folder))
     plan = target.plan

@@ -55,23 +55,14 @@ class ModelChange(NamedTuple):
 
 
 def changes_of(drive: Drive, fault: Fault) -> list[ModelChange]:
-    """Return the changes that a fault lists for a drive.
-
-    Raises:
-        TypeError: this is no fault
-        ValueError: the drive lacks what the fault needs, such as the teeth of its gear
-    """
-    _check(fault)
+    """Return the changes that a fault lists for a drive."""
     return _listed(fault, _facts(drive))
 
 
-def _check(fault: Fault) -> None:
+def _listed(fault: Fault, facts: Any) -> list[ModelChange]:
     if type(fault) not in _core.fault_families["fault"].values():
         raise TypeError(f"a fault must be a model of strainwave.fault, not {type(fault).__name__}")
-
-
-def _listed(fault: Fault, facts: Any) -> list[ModelChange]:
-    return [ModelChange(*each) for each in fault.changes(facts)]
+    return [ModelChange(*change) for change in fault.changes(facts)]
 
 
 def prepared(drive: Drive, faults: Sequence[Fault]) -> Drive:
@@ -112,12 +103,7 @@ def changes(drive: Drive, faults: Sequence[Fault]) -> dict[str, float]:
     """Return the numbers of a prepared drive with the faults, by their paths. The paths are the same at every severity.
 
     Args:
-        drive: a drive from `prepared`
         faults: in the order in which they act; each acts on the numbers that those before it leave
-
-    Raises:
-        TypeError: something is no fault
-        ValueError: the drive is not prepared for a fault
 
     >>> import strainwave as sw
     >>> numbers = changes(sw.load("position-drive"), [sw.fault.LubricationLoss(severity=0.5)])
@@ -126,7 +112,6 @@ def changes(drive: Drive, faults: Sequence[Fault]) -> dict[str, float]:
     """
     numbers = _Numbers(_places(drive))
     for fault in faults:
-        _check(fault)
         for change in _listed(fault, numbers.places.facts):
             numbers.make(fault, change)
     return numbers.changed
@@ -227,16 +212,12 @@ def _put_in(options: Mapping[str, Any], present: Any, law: str) -> Any:
     numbers = NEUTRAL.get(law, {})
     if kind and type(present) in _options(kind, "law").values():
         return kind(law=present, **numbers)
-    if kind and present.name in WITHOUT_EFFECT and not _required(kind):
+    if kind and present.name in WITHOUT_EFFECT and not any(field["required"] for field in kind.fields):
         return kind()
     if not hasattr(present, "law"):
         return None
     inner = _put_in(_options(present, "law"), present.law, law)
     return inner if inner is None else present.replace(law=inner)
-
-
-def _required(kind: Any) -> bool:
-    return any(field["required"] for field in kind.fields)
 
 
 def _with_wave(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
@@ -272,12 +253,8 @@ def _has_effect(drive: Drive, change: ModelChange) -> bool:
     if path is None:
         return False
     if change.kind == "wave" and hasattr(law := _at(drive, path), "law") and "friction" in change.place:
-        return any(getattr(law.law, name) for name in _number_names(law.law))
+        return any(getattr(law.law, field["name"]) for field in law.law.fields if field["kind"] == "number")
     return True
-
-
-def _number_names(model: Any) -> Iterator[str]:
-    return (field["name"] for field in model.fields if field["kind"] == "number")
 
 
 def _paths_of(drive: Drive, change: ModelChange) -> Iterator[str]:
@@ -309,17 +286,13 @@ class _Places:
         return self._scaled[key]
 
     def held(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
-        """Return the paths of the number that a change adds to, and of its direction.
-
-        Raises:
-            ValueError: the drive is not prepared for the fault
-        """
+        """Return the paths of the number that a change adds to, and of its direction."""
         key = change.place, change.quantity, change.law, change.order
         if key not in self._held:
-            self._held[key] = self._found(fault, change)
+            self._held[key] = self._paths_in(fault, change)
         return self._held[key]
 
-    def _found(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
+    def _paths_in(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
         path = _holder(self.drive, change)
         if path is None:
             raise ValueError(

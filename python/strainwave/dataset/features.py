@@ -74,11 +74,9 @@ class FeatureSet:
             columns |= {f"{signal}_{name}": values for name, values in moments(series[signal]).items()}
         if "current" not in self.signals or not self.orders:
             return columns
+        parts = [slice(first, first + MEMBERS_AT_ONCE) for first in range(0, len(input_angle), MEMBERS_AT_ONCE)]
         for way, sign in DIRECTIONS.items():
-            lines = [
-                self._lines(series["current"][part], input_angle[part], sign * input_speed[part])
-                for part in _parts(len(input_angle))
-            ]
+            lines = [self._lines(series["current"][part], input_angle[part], sign * input_speed[part]) for part in parts]
             amplitudes = np.concatenate(lines)
             columns |= {_name(order, way): amplitudes[:, place] for place, order in enumerate(self._all_orders)}
         return columns
@@ -86,7 +84,9 @@ class FeatureSet:
     def _lines(self, current: Array, angle: Array, speed: Array) -> Array:
         """Amplitudes of all orders in one direction, shape (members, orders)."""
         moving = speed > MIN_SPEED_SHARE * np.abs(speed).max(axis=1, keepdims=True)
-        turns = _turns(angle, moving)
+        high = np.where(moving, angle, -np.inf).max(axis=1)
+        low = np.where(moving, angle, np.inf).min(axis=1)
+        turns = np.where(moving.any(axis=1), high - low, 0.0) / (2.0 * np.pi)  # between the extremes of the angle while moving
         columns = TREND_COLUMNS + 2 * len(self._all_orders)
         enough = (turns >= MIN_TURNS) & (moving.sum(axis=1) >= MIN_SAMPLES_PER_COLUMN * columns)
         amplitudes = np.full((len(current), len(self._all_orders)), np.nan)
@@ -130,8 +130,6 @@ def order_amplitudes(current: Array, angle: Array, used: NDArray[np.bool_], orde
 
     Args:
         current, angle: shape (members, samples)
-        used: samples to use
-        orders: cycles per turn of the angle
 
     Returns:
         amplitudes, shape (members, orders); not-a-number where the samples do not determine them
@@ -178,29 +176,14 @@ def _basis(angle: Array, orders: Sequence[float]) -> Array:
     return basis
 
 
-def _turns(angle: Array, moving: NDArray[np.bool_]) -> Array:
-    """Turns between the extremes of the angle while moving."""
-    high = np.where(moving, angle, -np.inf).max(axis=1)
-    low = np.where(moving, angle, np.inf).min(axis=1)
-    return np.where(moving.any(axis=1), high - low, 0.0) / (2.0 * np.pi)
-
-
-def _parts(members: int) -> list[slice]:
-    return [slice(first, first + MEMBERS_AT_ONCE) for first in range(0, members, MEMBERS_AT_ONCE)]
-
-
 def _name(order: float, way: str) -> str:
     return f"current_order_{order:g}_{way}"
 
 
 def add_noise(series: dict[str, Array], noise: Mapping[Any, float], seed: int, members: NDArray[np.int64]) -> None:
-    """Add white noise to signals in place, a function of seed and member alone.
+    """Add white noise to signals of shape (members, samples) in place, a function of seed and member alone.
 
-    Args:
-        series: signals, each of shape (members, samples)
-        noise: standard deviation of each sample, by the name of the signal
-        seed: of the plan
-        members: index of each
+    It has the standard deviation of each sample, by the name of the signal.
     """
     noisy = [name for name in SIGNALS if noise.get(name, 0.0) > 0.0 and name in series]
     for row, member in enumerate(members.tolist() if noisy else []):

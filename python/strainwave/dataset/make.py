@@ -12,6 +12,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from strainwave.dataset import runners
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import HEALTHY, Population
@@ -47,12 +49,7 @@ ROLES = {
 
 
 def manifest(shards: Shards, schema: Any) -> str:
-    """Return the manifest, JSON: schema with units and sources, versions, splits, and the digest of the plan.
-
-    Args:
-        shards: of the data set
-        schema: of the Parquet files
-    """
+    """Return the manifest, JSON: schema of the Parquet files with units and sources, versions, splits, digest of the plan."""
     population, plan = shards.population, shards.plan
     units = shards.column_units()
     sources = population.gear_set.sources
@@ -152,8 +149,6 @@ def card(shards: Shards, schema: Any) -> str:
 
 def empty_splits(population: Population) -> list[str]:
     """Return what the plan has too few units or conditions for, one line each."""
-    import numpy as np
-
     plan = population.plan
     counts = {"unit": plan.units.number, "condition": plan.condition_count}
     lines = []
@@ -239,12 +234,7 @@ class CostEstimate(Presented):
 
 
 def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None = None) -> CostEstimate:
-    """Return what a plan takes, measured on a pilot.
-
-    Raises:
-        ValueError: the plan is refused
-        OSError: it does not fit on the disk
-    """
+    """Return what a plan takes, measured on a pilot; refuse it if it does not fit on the disk."""
     population, plan = shards.population, shards.plan
     _check_disk(folder, MIN_BYTES_PER_NUMBER * plan.members * len(population.features.signals), "at least")
     population.check()
@@ -328,15 +318,7 @@ def make(
 
 
 def member(plan: str | Path, index: int) -> tuple[pyarrow.Table, pyarrow.Table]:
-    """Return one member, made alone: its row in the data set, and its series.
-
-    Args:
-        plan: file of the plan
-        index: from 0
-
-    Raises:
-        ValueError: the plan is refused, or has no such member
-    """
+    """Return one member, made alone: its row in the data set, and its series."""
     shards = Shards(Population(DatasetPlan.read(plan)))
     if not 0 <= index < shards.plan.members:
         raise ValueError(f"member = {index} must lie in [0, {shards.plan.members - 1}]")

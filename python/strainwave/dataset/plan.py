@@ -12,7 +12,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from strainwave.dataset.profiles import LIMITS, PROFILES
 from strainwave.dataset.sampling import grid_levels
@@ -31,6 +31,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Line = Annotated[str, Field(max_length=2000)]
 Design = Literal["grid", "latin", "random", "sobol"]
+Listed = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)  # a list of TOML as a tuple
 
 
 class PlanTable(BaseModel):
@@ -90,11 +91,8 @@ def range_of(number: float | Range) -> Range:
 def _within(name: str, number: float | Range, low: float, high: float, unit: str) -> None:
     both = range_of(number)
     if not (low <= both.low and both.high <= high):
-        raise ValueError(f"{name} = {_shown(both)} must lie in [{low:g}, {high:g}]{f' {unit}' if unit else ''}")
-
-
-def _shown(both: Range) -> str:
-    return f"[{both.low:g}, {both.high:g}]" if both.varies else f"{both.low:g}"
+        shown = f"[{both.low:g}, {both.high:g}]" if both.varies else f"{both.low:g}"
+        raise ValueError(f"{name} = {shown} must lie in [{low:g}, {high:g}]{f' {unit}' if unit else ''}")
 
 
 class SimulationTable(PlanTable):
@@ -150,12 +148,7 @@ class FaultTable(PlanTable):
     onset: OnsetTable | None = None
     numbers: dict[str, Number] = {}
     words: dict[str, str] = {}
-    also: tuple[str, ...] = ()
-
-    @field_validator("also", mode="before")
-    @classmethod
-    def _tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
+    also: Annotated[tuple[str, ...], Listed] = ()
 
     @field_validator("severity")
     @classmethod
@@ -229,13 +222,8 @@ class FeaturesTable(PlanTable):
 class SamplesTable(PlanTable):
     """Series to keep in addition to the features."""
 
-    columns: tuple[str, ...]
+    columns: Annotated[tuple[str, ...], Listed]
     every: Annotated[int, Field(ge=1)] = 1
-
-    @field_validator("columns", mode="before")
-    @classmethod
-    def _tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
 
 
 class SplitsTable(PlanTable):
@@ -269,16 +257,11 @@ class DatasetPlan(PlanTable):
     simulation: SimulationTable = SimulationTable()
     units: UnitsTable
     life: LifeTable = LifeTable()
-    faults: tuple[FaultTable, ...] = ()
-    conditions: Annotated[tuple[ConditionTable, ...], Field(min_length=1)]
+    faults: Annotated[tuple[FaultTable, ...], Listed] = ()
+    conditions: Annotated[tuple[ConditionTable, ...], Field(min_length=1), Listed]
     features: FeaturesTable = FeaturesTable()
     samples: SamplesTable | None = None
     splits: SplitsTable = SplitsTable()
-
-    @field_validator("faults", "conditions", mode="before")
-    @classmethod
-    def _tuples(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
 
     @model_validator(mode="after")
     def _sums(self) -> DatasetPlan:
@@ -298,7 +281,7 @@ class DatasetPlan(PlanTable):
                 f"{self.simulation.duration:g} s"
             )
         for table in self.conditions:
-            _check_grid(f"conditions of the profile {table.profile}", table.design, table.number, list(table.ranges.values()))
+            check_grid(f"conditions of the profile {table.profile}", table.design, table.number, list(table.ranges.values()))
         return self
 
     @property
@@ -343,24 +326,16 @@ class DatasetPlan(PlanTable):
 
     @staticmethod
     def of(content: dict[str, Any]) -> DatasetPlan:
-        """Return the plan of tables.
-
-        Raises:
-            ValueError: the first thing that is wrong, in one line
-        """
+        """Return the plan of tables."""
         try:
             return DatasetPlan.model_validate(_without_whole_numbers(content))
         except ValidationError as error:
             raise ValueError(_in_words(error, content)) from None
 
 
-def check_unit_grid(design: Design, number: int, ranges: list[Range]) -> None:
-    """Refuse a grid of units that is not full."""
-    _check_grid("units", design, number, ranges)
-
-
-def _check_grid(what: str, design: str, number: int, ranges: list[Range]) -> None:
-    columns = sum(each.varies for each in ranges)
+def check_grid(what: str, design: str, number: int, ranges: list[Range]) -> None:
+    """Refuse a grid that is not full."""
+    columns = sum(both.varies for both in ranges)
     if design != "grid" or columns == 0:
         return
     levels = grid_levels(number, columns)

@@ -80,12 +80,6 @@ def grid_levels(count: int, columns: int) -> int:
 def points(design: str, seed: int, count: int, columns: int, first: int, last: int) -> Array:
     """Return the points `first` up to `last`, not included, of a design in the unit cube.
 
-    Args:
-        design: a name in `DESIGNS`
-        seed: of the whole design
-        count: points of the whole design
-        columns: dimensions of the cube
-
     Returns:
         coordinates in [0, 1], shape (last - first, columns)
     """
@@ -131,11 +125,6 @@ DESIGNS: dict[str, Callable[[int, int, int, Indices], Array]] = {
 
 def share_of(seed: int, what: str, indices: Indices, count: int, shares: Mapping[str, float], rest: str) -> NDArray[np.str_]:
     """Return for each of `count` things the name of the share that it is in: the shares are met to within one thing.
-
-    Args:
-        what: a name in `SPLIT_COLUMNS`
-        shares: sum at most 1
-        rest: name of what no share takes
 
     >>> names = share_of(1, "unit", np.arange(10), 10, {"train": 0.7, "test": 0.3}, "")
     >>> int((names == "train").sum())

@@ -126,9 +126,6 @@ def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Base
     """Return the replicates of recordings of a healthy joint, in the same column and over the same angle.
 
     The most important order, per revolution of the shaft, is first: of two that a block does not separate it is kept.
-
-    Raises:
-        ValueError: there are no orders, or the motion is too short for enough blocks
     """
     if not orders:
         raise ValueError("no order to compare: no line was found and no ratio is known; give --gear or --ratio")
@@ -165,13 +162,7 @@ def compared(
 
     Args:
         baseline: replicates, of a fit that contains all orders that are compared
-        motion: the recording
-        false_alarm: stated rate of false alarms, over all tests of a recording
-        new: orders of the baseline that were found in the recording alone
         searched: number of orders among which these were found; each counts as so many tests
-
-    Raises:
-        ValueError: the rate is no probability
     """
     false_alarm = arguments.probability("false_alarm", false_alarm)
     block = blocks_of(motion, baseline.travel)

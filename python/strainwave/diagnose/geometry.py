@@ -205,11 +205,7 @@ def as_tilt(estimate: MisalignmentEstimate, tilt_shift: Array) -> MisalignmentEs
 
 
 def ramp_of(recording: Recording, drive: Drive) -> ActuatorRamp:
-    """Return the ramp of a record that begins with it: its duration, and the stroke of its speed.
-
-    Raises:
-        ValueError: the input turns against the sense of a ramp to positive output angles, or `ActuatorRamp` refuses the ramp
-    """
+    """Return the ramp of a record that begins with it: its duration, and the stroke of its speed."""
     time = recording.values("time", "s")
     duration = float(time[-1] - time[0])
     angle = recording.values("input_angle", "rad")

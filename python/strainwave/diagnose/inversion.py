@@ -148,9 +148,6 @@ def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
     Lines between the orders have noise alone, except the next ones of an order, which contain half of it. Those near an order
     determine its noise. They come from a spectrum through a Hann window. It adds half to the power of noise, and the powers of
     neighbouring lines correlate by 4/9, of next ones by 1/36. So two lines determine it about as well as one without a window.
-
-    Raises:
-        ValueError: no line is that of noise alone, as the record has too few revolutions
     """
     orders = order_amplitudes(recording, column, ORDERS)
     spectrum = order_spectrum(recording, column, ORDERS[-1] + SPECTRUM_MARGIN)
@@ -263,8 +260,6 @@ def inverted(error: MeasuredOrders, law: Any, *, with_offset: bool = False) -> t
     """Return the point by least squares, each order weighted by its noise, and the mean square of the residual over the noise.
 
     Args:
-        error: orders of the kinematic error
-        law: `Misalignment`, whose dimensions are kept
         with_offset: fit c_x too, if the lobe further out carries. With m it moves the error from orders 2 and 4 to 1 and 3
 
     Returns:

@@ -43,11 +43,7 @@ class NamedOrder:
 
 
 def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]:
-    """Return the orders per revolution of the input of damaged elements of bearings, by their names.
-
-    Raises:
-        ValueError: the gear has no teeth, which determine the speed of the outer ring
-    """
+    """Return the orders per revolution of the input of damaged elements of bearings, by their names."""
     if not bearings:
         return {}
     facts = gear_facts(kinematics)

@@ -120,9 +120,6 @@ def parts_over_load(lines: ArrayLike, torque: ArrayLike, sigma: ArrayLike) -> Pa
         torque: mean torque through the gear in each [N.m], shape (records,)
         sigma: standard deviation of the real and of the imaginary part of each line, shape (records,)
 
-    Raises:
-        ValueError: there are fewer than two different torques, or shapes differ
-
     >>> parts = parts_over_load([0.02 + 0.01j, 0.02 + 0.11j], [0.0, 20.0], [1e-3, 1e-3])
     >>> round(parts.constant.real, 6), round(parts.per_torque.imag, 6)
     (0.02, 0.005)
@@ -190,9 +187,6 @@ class PossibleDrives:
 
         Args:
             gear_set: the drive with the sources and spreads of its numbers; those of a bare `Drive` count as assumed
-            ramp: the run, of that drive
-            members: number of drawn drives
-            seed: of the draws
         """
         pairs = runs_with_probe(ramp, [{}, *drawn_changes(gear_set, ramp, members, seed)], ["current"])
         gains = np.array([answer_per_error(*pair, "current") for pair in pairs])

@@ -121,9 +121,6 @@ def _with_shaft_of_input(run: JointRecording) -> JointRecording:
     """Return a run with both angles over the input itself, whose angle a controller may have divided by the ratio.
 
     Without a ratio it is then a run over the output.
-
-    Raises:
-        ValueError: the angles have another ratio than the one given
     """
     names = ("input_angle", "output_angle")
     record = evenly_turning(run.recording, names, [], run.rate)

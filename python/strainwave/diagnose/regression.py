@@ -98,10 +98,6 @@ def motion_of(
     A motion of one sense is cut to its last whole revolutions: of the output if it makes one and its angle or the ratio is
     known, else of the shaft. So no whole order leaks into its neighbours. Samples are averaged as far as the highest order
     allows.
-
-    Raises:
-        TypeError: an argument is not of its kind
-        ValueError: a column is missing, or the shaft rests, or turns less than a revolution
     """
     check_recording("recording", recording)
     arguments.text("column", column)
@@ -326,11 +322,7 @@ def growths(motion: SampledMotion) -> dict[str, Array]:
 
 
 def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderRegression]:
-    """Return the regression of each order, all fitted together with the smooth part; the record must separate them.
-
-    Raises:
-        ValueError: an order leaves no room for the noise around it
-    """
+    """Return the regression of each order, all fitted together with the smooth part; the record must separate them."""
     smooth = smooth_columns(motion, min(orders))
     grows = growths(motion)
     waves = [np.stack([wave * each for each in grows.values() for wave in motion.wave(order)], axis=1) for order in orders]

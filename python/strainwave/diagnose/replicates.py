@@ -86,11 +86,7 @@ class Cell:
 
 
 def joint_motion(run: JointRecording) -> JointMotion:
-    """Return a run with friction over speed, inertia and gravity taken out of its torque or current.
-
-    Raises:
-        ValueError: its samples are too few or too uneven
-    """
+    """Return a run with friction over speed, inertia and gravity taken out of its torque or current."""
     record, shaft = shaft_of(
         run.recording, run.column, run.angle, others=run.others, rate=run.rate, per_input=run.per_input, count=MAX_SAMPLES
     )
@@ -149,9 +145,6 @@ def cells_of(
 
     Series and waves are whitened over the whole recording before they are cut, so that noise at low frequencies does not leak
     into short blocks. Parts of a block are both directions if not given.
-
-    Returns:
-        cells by block, part and order; None for one with too little motion
     """
     shaft = motion.shaft
     masks = [shaft.own.sense == sign for _, sign in SENSES] if parts is None else list(parts)

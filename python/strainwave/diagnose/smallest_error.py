@@ -66,11 +66,7 @@ class SteadyRun:
 
     @classmethod
     def of(cls, drive: Drive, speed: float, load_torque: float, duration: float, sample_rate: float, order: float) -> SteadyRun:
-        """Return the run, with noise-free sensors.
-
-        Raises:
-            ValueError: a number is out of range, the drive records no current, or the record has too few samples or turns
-        """
+        """Return the run, with noise-free sensors."""
         speed = arguments.number("speed", speed, "rad/s", low=0.0)
         load_torque = arguments.number("load_torque", load_torque, "N.m")
         duration = arguments.number("duration", duration, "s", "(]", 0.0, MAX_DURATION)
@@ -101,11 +97,7 @@ class SteadyRun:
         return float(np.ceil(wanted * self.sample_rate)) / self.sample_rate
 
     def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
-        """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad].
-
-        Raises:
-            ValueError: the drive does not reach the speed
-        """
+        """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad]."""
         law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
         drive = self.drive.replace({ERROR: law})
         ratio = float(drive.gear.kinematics.ratio)

@@ -56,15 +56,10 @@ def orders_found(
     Args:
         recording: columns with the names of a drive log: time, input_angle, output_angle, angle, a speed instead of an angle,
             joint_torque, torque, input_torque, current, vibration
-        name: of the recording, for messages
-        ratio: of the gear, if it is known
         side: on which the angle or speed was measured, if its name does not contain it
         highest: order up to which ripple is looked for, of the shaft whose angle is used: the input of two
         rate: samples per second of a recording without time [Hz]
         other_angles: columns with the angles of other joints that move, by the name of the joint
-
-    Raises:
-        ValueError: the recording has neither two angles nor a torque or current with an angle, or determines no orders
 
     >>> theta = np.linspace(0.0, 400.0, 9000)
     >>> torque = 0.05 + 0.004 * np.cos(2 * theta) + np.random.default_rng(0).normal(0.0, 0.004, len(theta))

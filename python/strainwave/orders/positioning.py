@@ -78,9 +78,6 @@ def positioning(commanded: ArrayLike, measured: ArrayLike) -> Positioning:
         commanded: angles in the order of the moves [rad], shape (n,)
         measured: angles reached [rad], shape (n,)
 
-    Raises:
-        ValueError: there are few rows, the command does not change, or lengths differ
-
     >>> targets = np.concatenate([np.arange(0, 41), np.arange(39, -1, -1), np.arange(1, 41), np.arange(39, -1, -1)]) * 1e-3
     >>> reached = [0.0]
     >>> for target in targets[1:]:

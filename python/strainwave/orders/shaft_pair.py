@@ -86,9 +86,6 @@ def ratio_of(pair: Pair, given: float | None) -> tuple[Pair, Ratio]:
 
     The angles have a ratio near 1 if the controller divides the motor angle by the ratio. With a ratio given it is multiplied
     by it again. A ratio given is used with all its digits.
-
-    Raises:
-        ValueError: the angles do not move together, are swapped, or have another ratio than the one given
     """
     slope = float(np.polyfit(pair.input - pair.input.mean(), pair.output - pair.output.mean(), 1)[0])
     off = pair.output - slope * pair.input
@@ -163,13 +160,7 @@ def loads_of(pair: Pair, ratio: float) -> list[Array]:
 
 
 def ratio_remarks(ratio: Ratio, given: float | None, option: str) -> list[str]:
-    """Return what to know of a ratio: whether it is settled, what its sign means, and what to give.
-
-    Args:
-        ratio: as it was found
-        given: by the user, if so
-        option: with which a user gives the ratio
-    """
+    """Return what to know of a ratio: whether it is settled, what its sign means, and what to give."""
     remarks = _found_remarks(ratio, option) if given is None else _given_remarks(ratio, given)
     if not (ratio.whole and ratio.of_strain_wave):
         return remarks

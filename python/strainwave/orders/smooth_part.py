@@ -211,10 +211,6 @@ def shaft_of(
         others: columns with the angles of other joints, by the name of the joint; those that rest are left out
         rate: samples per second of a recording without time [Hz]
         per_input: revolutions of the input per revolution of the shaft; nan if it is not known
-        count: samples at most, of a long recording the first ones
-
-    Raises:
-        ValueError: the shaft or the column does not change, or the samples are too few or too uneven
     """
     record = evenly_turning(recording, [angle, *others.values()], [column], rate, count)
     columns = record.columns

@@ -56,9 +56,6 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter; where they are
     more uneven than that, rows are put on an even clock by interpolation. Where rows are missing for long, the longest stretch
     without such a gap is taken. Remarks follow.
-
-    Raises:
-        ValueError: there are too few rows, the stamps are no even time, or both `time` and `rate` are given
     """
     columns = {name: recording[name] for name in names}
     count = len(recording)
@@ -164,9 +161,6 @@ def unwrapped(name: str, angle: Array) -> Array:
     """Return an angle that goes on where a revolution ends [rad], shape (n,); one that goes on already, unchanged.
 
     An angle that stays within one revolution, and jumps by more than half of one, is taken to wrap.
-
-    Raises:
-        ValueError: it wraps, and turns by nearly half a revolution between two samples
 
     >>> unwrapped("input_angle", np.array([6.0, 6.2, 0.1, 0.3])).round(3)
     array([6.   , 6.2  , 6.383, 6.583])

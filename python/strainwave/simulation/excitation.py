@@ -58,24 +58,22 @@ class Excitation:
             raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
         if inputs is not None:
             arguments.mapping("inputs", inputs, '{"output_angle": 0.1}')
-        given = dict(inputs or {})
-        name = load_input(drive)
-        if name != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
-            raise ValueError(f"the load of this drive takes no load_torque, but {name}: give inputs={{{quoted(name)}: ...}}")
-        known = {name: load_torque if name == "load_torque" else 0.0, "temperature": temperature}
-        for each in given:
-            arguments.one_of("the name of an input", each, tuple(known))
-        known |= given
-        for each, signal in known.items():
+        load = load_input(drive)
+        if load != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
+            raise ValueError(f"the load of this drive takes no load_torque, but {load}: give inputs={{{quoted(load)}: ...}}")
+        signals = {load: load_torque if load == "load_torque" else 0.0, "temperature": temperature}
+        for name, signal in dict(inputs or {}).items():
+            signals[arguments.one_of("the name of an input", name, (load, "temperature"))] = signal
+        for name, signal in signals.items():
             if not isinstance(signal, Scenario | Real):
-                raise TypeError(f"{each} = {shortened(signal)} must be a number or a Scenario")
+                raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
             if isinstance(signal, Scenario) and signal.duration != command.duration:
-                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
+                raise ValueError(f"{name} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
             if not isinstance(signal, Scenario):
-                arguments.number(each, signal)
-        if not isinstance(known["temperature"], Scenario):
-            check_temperature(known["temperature"])
-        return cls(command, known[name], known["temperature"])
+                arguments.number(name, signal)
+        if not isinstance(signals["temperature"], Scenario):
+            check_temperature(signals["temperature"])
+        return cls(command, signals[load], signals["temperature"])
 
     @property
     def _scenarios(self) -> list[Scenario]:
@@ -92,14 +90,10 @@ class Excitation:
         check_room("steps", self.command.duration / dt, BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN)
 
     def ends(self, instants: Array, most: int) -> Array:
-        """Return the instants at which adaptive steps must end [s].
+        """Return the instants at which adaptive steps must end [s]; refuse what takes more than `most` steps.
 
         They are the jumps of the inputs, `instants`, at which a controller acts, and so many more that no step is as long as a
         period of an input.
-
-        Raises:
-            ValueError: it takes more than `most` steps to come from one to the next
-            MemoryError: they are too many
         """
         duration = self.command.duration
         waves = [wave for signal in self._scenarios for wave in signal.waves]
@@ -114,11 +108,10 @@ class Excitation:
         check_room("steps", duration / longest + len(instants), BYTES_PER_END, LONG_RUN)
         regular = grid(longest, duration, 1e-9 * MAX_ADAPTIVE_STEP)
         ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
-        return (
-            ends[np.append(np.diff(ends) > 1e-9 * MAX_ADAPTIVE_STEP * (duration > MAX_ADAPTIVE_STEP), True)]
-            if len(instants)
-            else ends
-        )
+        if not len(instants):
+            return ends
+        apart = np.diff(ends) > 1e-9 * MAX_ADAPTIVE_STEP * (duration > MAX_ADAPTIVE_STEP)
+        return np.asarray(ends[np.append(apart, True)])
 
     def check_temperature(self, ends: Array) -> None:
         """Refuse a temperature that is not positive, at eight places between all `ends`."""

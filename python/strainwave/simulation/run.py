@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,11 @@ from strainwave.simulation.time_grid import (
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 
-METHODS: tuple[Method, ...] = get_args(Method)
+METHODS: dict[Method, str] = {
+    "exponential": "exponential Runge-Kutta",
+    "moreau_jean": "Moreau-Jean time-stepping",
+    "rosenbrock": "Rosenbrock W-method",
+}
 SAMPLE_LESS = "sample less often, or record fewer outputs"
 MAX_STEPS_PER_FIXED_STEP = 1000  # adaptive steps of bristles that are too fast for fixed ones
 MAX_STEPS_OF_SHORT_RUN = 100_000  # adaptive steps
@@ -63,7 +67,7 @@ class Run(Recording):
     method: str
 
     def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: State, method: str) -> None:
-        super().__init__(columns, units, title=_title(method))
+        super().__init__(columns, units, title=f"{GENERATED_TITLE}: {method}")
         self._came_about(end, method)
 
     @classmethod
@@ -82,7 +86,7 @@ class Run(Recording):
         if unit is not None and "command" in units:
             units["command"] = unit
         run = object.__new__(cls)
-        run._hold(columns_of(time, recorded, outputs), units, _title(method))
+        run._hold(columns_of(time, recorded, outputs), units, f"{GENERATED_TITLE}: {method}")
         run._came_about(end, method)
         return run
 
@@ -92,10 +96,6 @@ class Run(Recording):
     def _came_about(self, end: State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)
-
-
-def _title(method: str) -> str:
-    return f"{GENERATED_TITLE}: {method}"
 
 
 def simulate(
@@ -233,11 +233,7 @@ class Course(NamedTuple):
     def of(
         cls, drive: Drive, excitation: Excitation, recorded: Mapping[str, Output], dt: float, interval: float, instants: Array
     ) -> Course:
-        """Return the course with steps of at most `dt`, samples at `interval` [s], and steps that also end at `instants` [s].
-
-        Raises:
-            ValueError, MemoryError: the steps or the samples are too many
-        """
+        """Return the course with steps of at most `dt`, samples at `interval` and steps that also end at `instants` [s]."""
         channels = channels_of(recorded)
         duration = excitation.command.duration
         check_instants(duration, dt, LONGER_STEPS)
@@ -255,7 +251,7 @@ class Course(NamedTuple):
         check_resolution(self.drive, self.time_grid.longest, twist, temperature)
 
     def largest_twist(self, outputs: Array) -> float:
-        return _largest_twist(outputs[self.channels.index(TWIST)])
+        return float(np.abs(outputs[self.channels.index(TWIST)]).max())
 
     def run(self, outputs: Array, state: Array, method: str, unit: str | None = None) -> Run:
         """The run that ends in a state, with a unit of the command where it is not the drive's own."""
@@ -276,8 +272,8 @@ def check_samples(duration: float, interval: float, columns: float) -> None:
 
 def channels_of(recorded: Mapping[str, Output]) -> list[int]:
     """Return the channels of the recorded outputs and of the twist, which determines whether steps were short enough."""
-    found = [each.channel for each in recorded.values()]
-    return found if TWIST in found else [*found, TWIST]
+    channels = [output.channel for output in recorded.values()]
+    return channels if TWIST in channels else [*channels, TWIST]
 
 
 def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int], samples: int) -> Array:
@@ -292,16 +288,9 @@ def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int],
     return outputs
 
 
-_NAMED: dict[Method, str] = {
-    "exponential": "exponential Runge-Kutta",
-    "moreau_jean": "Moreau-Jean time-stepping",
-    "rosenbrock": "Rosenbrock W-method",
-}
-
-
 def _named(method: Method, drive: Drive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
-    return _NAMED[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
+    return METHODS[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
 
 
 def simulate_adaptively(
@@ -391,14 +380,9 @@ def differentiate(
     samples: float | Array,
     initial: Mapping[str, float] | None = None,
 ) -> tuple[Recording, Array]:
-    """A run and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
+    """A run and its derivatives, shape (numbers, columns without time, n), by parameters, exact to rounding (dual numbers).
 
-    Args:
-        numbers: places in `_core.parameters(drive)`
-        samples: interval of the samples, or the samples [s], beginning with 0
-
-    Returns:
-        the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
+    The parameters are places in `_core.parameters(drive)`. Samples are their interval, or all of them, from 0 on [s].
     """
     temperature = excitation.first()[TEMPERATURE_PLACE]
     beginning_numbers(drive, initial, excitation.first())  # refuses what is no beginning
@@ -428,7 +412,8 @@ def recording(
     """Return the recording of a checked run that began at a temperature [K]; outputs (recorded, samples) contain the twist."""
     time = time_grid.times
     check_meaning(time, recorded, outputs, remedy(time_grid.longest))
-    check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]), temperature)
+    twist = float(np.abs(outputs[list(recorded).index("twist")]).max())
+    check_resolution(drive, time_grid.longest, twist, temperature)
     units = signals.units(drive, recorded.values())
     return Recording(columns_of(time, recorded, outputs), units, title=GENERATED_TITLE)
 
@@ -452,7 +437,3 @@ def _finite(end: State, what_to_do: str) -> State:
         wrong = [name for name, number in zip(end, end.numbers, strict=True) if not np.isfinite(number)]
         raise FloatingPointError(f"the simulation diverged ({listed(wrong)} at the end); {what_to_do}")
     return end
-
-
-def _largest_twist(twist: Array) -> float:
-    return float(np.abs(twist).max())

@@ -60,11 +60,11 @@ def pieces(
     >>> float(pieces([0.0, 1.0], [0.0, 2.0], [1.0, 0.0], duration=2.0).value(0.5))
     0.5
     """
-    given = {"amplitude": wave_amplitude, "frequency": wave_frequency, "sweep": wave_sweep, "phase": wave_phase}
-    columns = [arguments.numbers(f"wave_{name}", each) for name, each in given.items()]
-    if columns[0].ndim != 1 or any(each.shape != columns[0].shape for each in columns):
+    numbers = {"amplitude": wave_amplitude, "frequency": wave_frequency, "sweep": wave_sweep, "phase": wave_phase}
+    columns = [arguments.numbers(f"wave_{name}", values) for name, values in numbers.items()]
+    if columns[0].ndim != 1 or any(column.shape != columns[0].shape for column in columns):
         raise ValueError("wave_amplitude, wave_frequency, wave_sweep and wave_phase must be lists of equally many numbers")
-    waves = tuple(Wave(*each) for each in np.column_stack(columns).tolist())
+    waves = tuple(Wave(*wave) for wave in np.column_stack(columns).tolist())
     return Scenario(duration, np.asarray(start), np.asarray(level), np.asarray(slope), waves)
 
 
@@ -358,9 +358,9 @@ def _unit_of(argument: str, unit: str) -> str:
 
 
 def _number(place: str, given: Any, unit: str) -> float:
-    if isinstance(found := _numbers(place, given, unit), list):
+    if isinstance(number := _numbers(place, given, unit), list):
         raise ValueError(f"{place} = {shortened(given)} must be one number")
-    return float(found)
+    return float(number)
 
 
 def _numbers(place: str, given: Any, unit: str, absolute: bool = True) -> Any:
@@ -401,15 +401,16 @@ def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
     constant = {name: value for name, value in signals.items() if not isinstance(value, Scenario)}
     content |= {name: _quantity(float(value), units[name]) for name, value in constant.items()}
     for name, signal in signals.items():
-        if isinstance(signal, Scenario):
-            content[name] = [_with_units(kind, entries, units[name]) for kind, entries in _terms(signal)]
+        if isinstance(signal, Scenario):  # as the kinds whose sum it is to the last bit, else as its pieces
+            terms = _line(signal) + [_wave(wave, signal.duration) for wave in signal.waves]
+            terms = terms if _sum_of(terms, signal.duration) == signal else [_pieces(signal)]
+            content[name] = [
+                {"kind": kind} | {key: _quantity(value, _unit_of(key, units[name])) for key, value in entries.items()}
+                for kind, entries in terms
+            ]
     if given.initial:
         content["initial"] = {name: _quantity(float(value), QUANTITIES[name][1]) for name, value in given.initial.items()}
     return content
-
-
-def _with_units(kind: str, entries: Mapping[str, Any], unit: str) -> dict[str, Any]:
-    return {"kind": kind} | {key: _quantity(value, _unit_of(key, unit)) for key, value in entries.items()}
 
 
 def _quantity(value: float | list[float], unit: str) -> Any:
@@ -421,12 +422,6 @@ def _quantity(value: float | list[float], unit: str) -> Any:
 
 
 Terms = list[tuple[str, dict[str, Any]]]  # kinds, each with its arguments
-
-
-def _terms(signal: Scenario) -> Terms:
-    """A signal as the kinds whose sum it is to the last bit, else as its pieces."""
-    terms = _line(signal) + [_wave(each, signal.duration) for each in signal.waves]
-    return terms if _sum_of(terms, signal.duration) == signal else [_pieces(signal)]
 
 
 def _line(signal: Scenario) -> Terms:

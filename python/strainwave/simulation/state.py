@@ -148,10 +148,10 @@ class StateLayout:
 
     def friction(self) -> Array:
         """1 for each continuous number of friction, 0 for the others; shape (count, 1)."""
-        found = np.zeros((self.count, 1))
+        mask = np.zeros((self.count, 1))
         for place in ("friction_input", "friction_mesh", "friction_output"):
-            found[self.places[place]] = 1.0
-        return found
+            mask[self.places[place]] = 1.0
+        return mask
 
 
 def same_shape(one: Drive, other: Drive) -> bool:
@@ -160,12 +160,7 @@ def same_shape(one: Drive, other: Drive) -> bool:
 
 
 def start_of(drive: Drive, state: object, name: str = "initial") -> State:
-    """A state given as argument `name`, if it is one of this drive.
-
-    Raises:
-        TypeError: it is no state
-        ValueError: it is a state of a drive with other models
-    """
+    """A state given as argument `name`, if it is one of this drive."""
     if not isinstance(state, State):
         raise TypeError(
             f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.analysis.equilibrium(...) is one"
@@ -188,10 +183,6 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
     """The quantities that `initial` names, as the core takes them; None for a start at rest.
 
     Where the load prescribes the motion of the output shaft a run never begins at rest, but where that motion does.
-
-    Raises:
-        TypeError: it is no mapping, or a value is no number
-        ValueError: a quantity is not known, not finite, or not one value for each member, or they contradict each other
     """
     prescribed = load_input(drive) == "output_angle"
     if initial is None and not prescribed:
@@ -230,12 +221,7 @@ def _check_together(drive: Drive, names: set[str], prescribed: bool) -> None:
 
 
 def beginning_numbers(drive: Drive, initial: Initial | Mapping[str, ArrayLike] | None, inputs: Array) -> Array:
-    """The numbers of the state that a single run begins in, under the inputs of its first instant.
-
-    Raises:
-        TypeError: as `known`
-        ValueError: `initial` is a state of another drive, there is no state that has these quantities, or as `known`
-    """
+    """The numbers of the state that a single run begins in, under the inputs of its first instant."""
     if isinstance(initial, State):
         return start_of(drive, initial).numbers
     given = known(drive, initial)

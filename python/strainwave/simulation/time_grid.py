@@ -34,10 +34,7 @@ def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None
     """Refuse what takes more than `MAX_BYTES`; a MemoryError within names it, its size, and the remedy.
 
     Args:
-        what: takes it, in the plural
-        count: how many there are
         each: size of one [bytes]
-        remedy: what to do about it
 
     >>> with room_for("samples", 5e8, 8.0, "take fewer"):
     ...     raise MemoryError

@@ -45,7 +45,6 @@ def steady_torque(
     """Return the torques of a gear that turns steadily.
 
     Args:
-        gear: with its twist at rest
         speed: of the input [rad/s]
         angle: of the input [rad]; speed and angle are broadcast
         load: torque at the output that opposes forward motion [N.m]
@@ -100,12 +99,7 @@ class Plant:
 
     @classmethod
     def of(cls, gear_set: GearSet, period: float, delay: float) -> Plant:
-        """Return the plant of a set.
-
-        Raises:
-            ValueError: the set has no motor or no load, the load prescribes the motion, or the motor takes neither a current, a
-                torque nor a voltage, or the inertia of the load is too small
-        """
+        """Return the plant of a set."""
         drive, load = gear_set.drive, gear_set.drive.load
         if isinstance(load, loads.Prescribed):
             raise ValueError(f"{gear_set.name}: the load prescribes the motion of the output; give one with an inertia")
@@ -249,11 +243,7 @@ def observer_of(plant: Plant, setting: Setting) -> compensation.DisturbanceObser
 
 
 def model_of(plant: Plant, gear: Gear) -> compensation.ModelFeedforward:
-    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate.
-
-    Raises:
-        ValueError: the kinematic error of the gear is too steep to be fed forward
-    """
+    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate."""
     inertia = float(plant.drive.motor.inertia)
     return compensation.ModelFeedforward(
         gear=gear, load=plant.drive.load, motor_inertia=inertia, temperature=plant.start_temperature

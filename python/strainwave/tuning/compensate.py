@@ -255,11 +255,7 @@ def compensate(
 
 
 def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None]) -> list[Judged]:
-    """Return the best cascade of each encoder that the controller sees, the better one first.
-
-    Raises:
-        ValueError: no run under the better one came to its end
-    """
+    """Return the best cascade of each encoder that the controller sees, the better one first."""
     encoders = ("input", "output") if encoder == "output" else ("input",)
     cascades = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
     cascades.sort(key=lambda cascade: cascade.upper(goal.judged_by))
@@ -333,8 +329,7 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: f
     return goals.smooth(given, CREEP_DURATION, unit)
 
 
-def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
-    """Yield what was assumed, and what cannot be gained."""
+def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
     if type(gear_set.motor) is not type(plant.drive.motor):
         yield f"the current loop of the motor, a {type(gear_set.motor).__name__}, is taken as ideal"
     if not plant.drive.motor.inertia:
@@ -348,6 +343,11 @@ def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Itera
         yield f"the load is a stop of {load.stiffness:.3g} N·m/rad, against which the torque goes from 0 to {highest:.3g} N·m"
     if cogging := getattr(gear_set.motor, "cogging_torque", 0.0):
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
+
+
+def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
+    """Yield what was assumed, and what cannot be gained."""
+    yield from _of_the_drive(gear_set, plant, goal)
     for effect in EFFECTS:
         if not has_effect(plant.drive.gear, effect):
             yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"

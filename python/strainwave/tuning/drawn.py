@@ -43,16 +43,8 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     the load, 1.05 for the torque constant of a motor. A phase that is assumed may be any. Exponents, characteristic speeds and
     the inertia of the motor are not drawn.
 
-    Args:
-        gear_set: a drive with the sources of its numbers
-        members: how many are drawn
-        seed: of the random numbers; the same seed draws the same drives
-
     Returns:
         the values of each number that differs, by path, shape (members,)
-
-    Raises:
-        ValueError: more are asked for than `MAX_DRAWN`
 
     >>> import strainwave as sw
     >>> draws = drawn_gears(sw.GearSet.read("robot-joint"), 3)

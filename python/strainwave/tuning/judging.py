@@ -131,10 +131,7 @@ def conditions(
     """Yield cascade and controller at other speeds, load inertias and temperatures.
 
     Args:
-        controllers: cascade and controller
         goal_at: the goal at a speed, as a share of that by which they were chosen
-        draws: numbers of drawn gears, by path
-        plant: the drive
     """
 
     def at(name: str, goal: Goal, drawn: Mapping[str, Array], **changes: float) -> ConditionResult:

@@ -355,11 +355,7 @@ def _at_crossings(series: Array, values: Array) -> Array:
 
 
 def margins_figure(margins: Mapping[str, Any]) -> Figure:
-    """Return the Bode diagram of open loops: a triangle at each gain margin, a circle at each phase margin.
-
-    Args:
-        margins: `Margins` of each loop, by its name
-    """
+    """Return the Bode diagram of open loops: a triangle at each gain margin, a circle at each phase margin."""
     loops = [Response(_label(name, each), each.frequency / tau, each.loop) for name, each in margins.items()]
     figure = bode_figure(loops, "1", "Open loops: ▲ gain margin, ● phase margin")
     magnitude, phase = figure.axes

@@ -61,11 +61,7 @@ class Program:
         return len(self.cost)
 
     def solver(self) -> Any:
-        """Return the solver.
-
-        Raises:
-            ImportError: osqp is not installed
-        """
+        """Return the solver."""
         try:
             import osqp
         except ImportError:
@@ -259,10 +255,7 @@ class PredictiveModel:
 
     @classmethod
     def of(cls, plant: Plant, linear: LinearPlant, weight: Array, effort: float) -> PredictiveModel:
-        """
-        Raises:
-            ValueError: these weights have no regulator
-        """
+        """"""
         step, driven = linear.held(plant.period, plant.delay).extended
         value, gains = optimal(step, driven, weight, effort)
         held = linear.held(plant.period)
@@ -352,11 +345,7 @@ def mpc(
 
 
 def _linear_of(plant: Plant, torque_limit: float | None) -> LinearPlant:
-    """Return the linear model of a drive whose states are all measured.
-
-    Raises:
-        ValueError: it has other states, or the limit is not positive
-    """
+    """Return the linear model of a drive whose states are all measured."""
     if torque_limit is not None:
         torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
     return LinearPlant.of(plant, torque_limit).measured_by_encoders()

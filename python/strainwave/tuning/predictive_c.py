@@ -163,15 +163,7 @@ double predictive_step(const predictive_measured *measured, const double angle[P
 def write_c(
     folder: Path, states: Sequence[str], horizon: int, constants: dict[str, float], arrays: Mapping[str, Array]
 ) -> None:
-    """Write `predictive.h` and `predictive.c` into the folder of the solver.
-
-    Args:
-        folder: of the solver
-        states: names, in their order
-        horizon: number of actuations that are planned
-        constants: numbers of the controller, by name
-        arrays: of the controller and its program, by name
-    """
+    """Write `predictive.h` and `predictive.c` into the folder of the solver."""
     count, parameters = arrays["shift"].shape
     source = SOURCE.format(
         states=len(states),
