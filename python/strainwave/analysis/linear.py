@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, Gear, _core, arguments, control, friction, motor, sensor
-from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
+from strainwave.analysis.steady import OVERFLOW_REASON, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.presentation import Pictured, Row, counted
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
+from strainwave.simulation.signals import TWIST_CHANNEL, check_continuous, command_unit, outputs, units
 from strainwave.simulation.state import State, StateLayout, start_of
 from strainwave.simulation.time_grid import room_for
 
@@ -36,9 +36,9 @@ MIN_GROWTH_SHARE = 1e-9  # of a pole that grows: its real part over its size; be
 MIN_RELATIVE_POLE = 1e-6  # over the largest; a smaller one is 0 but for rounding
 DRAWN_FREQUENCIES = 600  # of a Bode diagram
 HOLDING_TORQUE = 1e30  # N.m: more than any torque that turns an input
-DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
-INPUTS = ("command", "command_rate", "load_torque", "temperature")
-_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
+DAMPING_UNITS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
+LINEAR_INPUTS = ("command", "command_rate", "load_torque", "temperature")
+_INPUT_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
 
 
 def continuous(drive: Drive) -> tuple[Drive, tuple[str, ...]]:
@@ -307,13 +307,13 @@ def linearise(
         drive = averaged(drive)
     slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
     if not all(np.isfinite(each).all() for each in slopes):
-        raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
+        raise ValueError(f"the drive cannot be linearised: {OVERFLOW_REASON}")
     layout = StateLayout(drive)
     count = layout.count
     shown = outputs(drive)
     rows = [*range(count), *(count + each.channel for each in shown.values())]
     by_numbers, by_inputs = np.split((0.5 * slopes[0].T + 0.5 * slopes[1].T)[rows], [count], axis=1)
-    by_inputs = by_inputs[:, _COLUMNS]
+    by_inputs = by_inputs[:, _INPUT_COLUMNS]
     kept = _moving(state, layout)
     tied = np.eye(layout.count)
     if state.output_slip_direction == 0.0:  # while the output sticks, the transmission error goes with the input
@@ -325,8 +325,8 @@ def linearise(
     of_inputs = {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
     all_units = layout.units | units(drive, shown.values()) | of_inputs
     states = tuple(layout.names[place] for place in kept)
-    chosen = {name: all_units[name] for name in (*states, *INPUTS, *shown)}
-    return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen, notes)
+    chosen = {name: all_units[name] for name in (*states, *LINEAR_INPUTS, *shown)}
+    return Linearisation(a[kept], b[kept], c, d, states, LINEAR_INPUTS, tuple(shown), chosen, notes)
 
 
 def modes(drive: Drive) -> dict[str, Array]:
@@ -355,7 +355,7 @@ def modes(drive: Drive) -> dict[str, Array]:
     arguments.drive(drive)
     same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
-    damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPINGS]
+    damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPING_UNITS]
     gear = gear.replace(structure=gear.structure.replace(dict.fromkeys(damped, 0.0)))
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HOLDING_TORQUE, breakaway=HOLDING_TORQUE)))
@@ -370,7 +370,7 @@ def _frequencies(drive: Drive) -> Array:
 
 def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:
     """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
-    twist = _core.now(drive, state.numbers, inputs)[TWIST].item()
+    twist = _core.now(drive, state.numbers, inputs)[TWIST_CHANNEL].item()
     little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
     at_rest = state.input_speed == state.output_speed == 0.0
 

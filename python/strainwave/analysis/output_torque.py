@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-USED = ("gear.stiffness.", "gear.hysteresis.", "gear.kinematic_error.", "gear.damping")  # numbers that the torque depends on
+TORQUE_NUMBERS = (
+    "gear.stiffness.",
+    "gear.hysteresis.",
+    "gear.kinematic_error.",
+    "gear.damping",
+)  # numbers that the torque depends on
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +154,7 @@ def _sigma(gear_set: GearSet, angles: Array, zero: float, time: Array | None) ->
     """Return the standard deviation of the torque: slopes over a standard deviation of each number, times the covariance."""
     if gear_set.covariance is None:
         return np.full(angles.shape[1], np.nan)
-    chosen = [place for place, path in enumerate(gear_set.covariance.paths) if path.startswith(USED)]
+    chosen = [place for place, path in enumerate(gear_set.covariance.paths) if path.startswith(TORQUE_NUMBERS)]
     covariance = np.asarray(gear_set.covariance.array)[np.ix_(chosen, chosen)]
     drive, slopes = Drive(gear=gear_set.gear), np.zeros((len(chosen), angles.shape[1]))
     for row, (place, deviation) in enumerate(zip(chosen, np.sqrt(np.diag(covariance)), strict=True)):

@@ -35,7 +35,7 @@ Complex = NDArray[np.complex128]
 _MIN_STEPS_PER_PERIOD = 64  # harmonics up to the 31st
 _MIN_FREQUENCY = 1e-300  # Hz: its period is still finite
 _MIN_AMPLITUDE = 1e-100  # a quotient by it is still finite
-_SINES = ("command", "load_torque")
+_SINE_INPUTS = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +204,7 @@ def _check(frequencies: Array, signal: str, dt: float) -> None:
     for frequency in frequencies.tolist():
         arguments.number("frequency", frequency, "Hz", "[]", _MIN_FREQUENCY, 1.0 / MIN_DURATION)
         check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")
-    arguments.one_of("input", signal, _SINES)
+    arguments.one_of("input", signal, _SINE_INPUTS)
 
 
 @dataclass(frozen=True)

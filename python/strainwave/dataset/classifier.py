@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.dataset.folder import DatasetFolder
+from strainwave.dataset.plan import HEALTHY_LABEL
 from strainwave.files.parquet_table import read_columns
 from strainwave.messages import listed, one_line
 from strainwave.presentation import Presented
@@ -26,18 +27,23 @@ Labels = NDArray[np.str_]
 FOREST_TREES = 200  # of the forest
 MIN_RUNS_PER_LEAF = 2  # runs in a leaf
 INTERVAL_CONFIDENCE = 0.95
-QUANTILES = (0.5 - 0.5 * INTERVAL_CONFIDENCE, 0.5 + 0.5 * INTERVAL_CONFIDENCE)  # ends of an interval
+INTERVAL_ENDS = (0.5 - 0.5 * INTERVAL_CONFIDENCE, 0.5 + 0.5 * INTERVAL_CONFIDENCE)  # ends of an interval
 BOOTSTRAP_RESAMPLES = 400  # of units, for an interval
 CHANCE_SHUFFLES = 50  # of labels between units, for chance
 CHANCE_TREES = 25  # of the forest of a shuffle: 50 forests take less time so than ten of the others
 HELD_OUT_SHARE = 0.3  # of the units, and of the conditions
 MIN_UNITS = 8
-EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
-HEALTHY = "healthy"
+MISSING_EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
 MAX_RUNS = 2_000_000  # in memory at once
 FALSE_ALARM = 0.01  # share of healthy training runs that the threshold of the detector lets alarm
 MIN_HEALTHY_RUNS = 100  # from which a threshold of that share is taken
-PHYSICAL = ("current_order_", "current_mean", "current_rms", "torque_mean", "torque_rms")  # beginnings of feature names
+PHYSICAL_FEATURES = (
+    "current_order_",
+    "current_mean",
+    "current_rms",
+    "torque_mean",
+    "torque_rms",
+)  # beginnings of feature names
 
 
 @dataclass(frozen=True)
@@ -102,7 +108,7 @@ class LabelledRuns:
     label: Labels
     unit: NDArray[np.int64]
     condition: NDArray[np.int64]
-    healthy: str = "healthy"
+    healthy: str = HEALTHY_LABEL
 
     def __post_init__(self) -> None:
         runs = len(self.label)
@@ -198,7 +204,7 @@ def _chance(runs: LabelledRuns, shuffled: list[Labels], held_unit: NDArray[np.bo
     accuracies = [
         balanced_accuracy(truth, _answers(runs, label, ~held_unit, held_unit, seed, CHANCE_TREES)) for label in shuffled
     ]
-    low, high = np.quantile(accuracies, QUANTILES)
+    low, high = np.quantile(accuracies, INTERVAL_ENDS)
     return Score(float(np.mean(accuracies)), float(low), float(high), len(truth), len(np.unique(units)))
 
 
@@ -209,7 +215,7 @@ def _answers(
     try:
         from sklearn.ensemble import RandomForestClassifier
     except ImportError:
-        raise ImportError(EXTRA) from None
+        raise ImportError(MISSING_EXTRA) from None
     forest = RandomForestClassifier(
         trees or FOREST_TREES, min_samples_leaf=MIN_RUNS_PER_LEAF, class_weight="balanced", random_state=seed, n_jobs=-1
     )
@@ -230,7 +236,7 @@ def _score(truth: Labels, answers: Labels, units: NDArray[np.int64], seed: int) 
     for _ in range(BOOTSTRAP_RESAMPLES):
         rows = np.concatenate([members[place] for place in chance.integers(len(members), size=len(members))])
         drawn.append(balanced_accuracy(truth[rows], answers[rows]))
-    low, high = np.quantile(drawn, QUANTILES)
+    low, high = np.quantile(drawn, INTERVAL_ENDS)
     return Score(balanced_accuracy(truth, answers), float(low), float(high), len(truth), len(members))
 
 
@@ -296,16 +302,16 @@ def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, Detec
     first = {key: row for row, key in zip(np.flatnonzero(stage == 0).tolist(), group[stage == 0].tolist(), strict=True)}
     kept = np.flatnonzero(sound & (stage > 0))
     reference = np.array([first[key] for key in group[kept].tolist()])
-    label = np.where(severity[kept] > 0.0, columns["fault"][kept], HEALTHY).astype(np.str_)
+    label = np.where(severity[kept] > 0.0, columns["fault"][kept], HEALTHY_LABEL).astype(np.str_)
     features = {name: columns[name][kept].astype(np.float64) for name in names}
     features = {name: values for name, values in features.items() if not np.isnan(values).all()}
     changes = {name: values - columns[name][reference] for name, values in features.items()}
     groups = columns["unit"][kept].astype(np.int64), columns["condition"][kept].astype(np.int64)
-    physical = np.column_stack([values for name, values in changes.items() if name.startswith(PHYSICAL)])
+    physical = np.column_stack([values for name, values in changes.items() if name.startswith(PHYSICAL_FEATURES)])
     return (
         LabelledRuns(features, label, *groups),
         LabelledRuns(changes, label, *groups),
-        DetectorRuns(physical, label == HEALTHY),
+        DetectorRuns(physical, label == HEALTHY_LABEL),
     )
 
 

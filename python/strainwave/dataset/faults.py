@@ -20,12 +20,14 @@ MAX_DRIVES_KEPT = 16  # whose places of numbers are kept
 SAME_ORDER = 1e-9  # relative difference of two orders that are one
 ERROR_PLACE = "gear.kinematic_error"
 WITHOUT_EFFECT = ("constant", "ideal")  # laws that another may replace
-REMEDIES = {
+LAW_REMEDIES = {
     "fourier": "its harmonics(), in place of the law that is there, are one",
     "encoder": "sensor.Encoder(counts=...) is one",
     "gain": "sensor.Gain() and sensor.Encoder(counts=...) have an offset",
 }  # where the drive gets a law from that cannot be put in
-NEUTRAL: Mapping[str, Mapping[str, float]] = {"backlash": {"clearance": 0.0}}  # required numbers of a law without effect
+NEUTRAL_NUMBERS: Mapping[str, Mapping[str, float]] = {
+    "backlash": {"clearance": 0.0}
+}  # required numbers of a law without effect
 
 Fault = Any  # a model of `sw.fault`
 
@@ -195,7 +197,7 @@ def _with_law(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
         raise ValueError(
             f"{fault.name} needs a law {change.law} at {change.place}, where {present.name} is, which it can neither hold nor "
             "replace without a change of the healthy drive; give the drive such a law"
-            + (f" ({REMEDIES[change.law]})" if change.law in REMEDIES else "")
+            + (f" ({LAW_REMEDIES[change.law]})" if change.law in LAW_REMEDIES else "")
             + ", or leave the fault out"
         )
     return drive.replace({change.place: whole})
@@ -209,7 +211,7 @@ def _options(owner: Any, name: str) -> Mapping[str, Any]:
 def _put_in(options: Mapping[str, Any], present: Any, law: str) -> Any:
     """Return the present law with another in its place, around it or within it, without effect; None if it does not fit."""
     kind = options.get(law)
-    numbers = NEUTRAL.get(law, {})
+    numbers = NEUTRAL_NUMBERS.get(law, {})
     if kind and type(present) in _options(kind, "law").values():
         return kind(law=present, **numbers)
     if kind and present.name in WITHOUT_EFFECT and not any(field["required"] for field in kind.fields):

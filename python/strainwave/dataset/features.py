@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MOMENTS = ("mean", "rms", "peak", "kurtosis")
-DIRECTIONS = {"forward": 1.0, "backward": -1.0}
+MOMENT_NAMES = ("mean", "rms", "peak", "kurtosis")
+DIRECTION_SIGNS = {"forward": 1.0, "backward": -1.0}
 MIN_SPEED_SHARE = 0.02  # of the highest speed of a run: slower samples belong to no direction
 MIN_TURNS = 1.5  # of the input in one direction, below which orders from 1 on are not separated from the mean
 MIN_SAMPLES_PER_COLUMN = 3  # of the regression
 MAX_CONDITION = 1e10  # of the normal equations, beyond which amplitudes have fewer than six digits
-SIGNALS = ("current", "torque", "input_speed", "tracking_error")  # in the order in which they draw noise
+NOISY_SIGNALS = ("current", "torque", "input_speed", "tracking_error")  # in the order in which they draw noise
 TREND_COLUMNS = 3  # of the regression: mean, slope and curvature over time
 MEMBERS_AT_ONCE = 64  # whose matrices fit into a processor's cache
 
@@ -49,10 +49,10 @@ class FeatureSet:
         found = {
             f"{signal}_{moment}": "1" if moment == "kurtosis" else unit
             for signal, unit in self.signals.items()
-            for moment in MOMENTS
+            for moment in MOMENT_NAMES
         }
         if "current" in self.signals:
-            found |= dict.fromkeys((_name(order, way) for order in self._all_orders for way in DIRECTIONS), "A")
+            found |= dict.fromkeys((_name(order, way) for order in self._all_orders for way in DIRECTION_SIGNS), "A")
         return found
 
     @property
@@ -75,7 +75,7 @@ class FeatureSet:
         if "current" not in self.signals or not self.orders:
             return columns
         parts = [slice(first, first + MEMBERS_AT_ONCE) for first in range(0, len(input_angle), MEMBERS_AT_ONCE)]
-        for way, sign in DIRECTIONS.items():
+        for way, sign in DIRECTION_SIGNS.items():
             lines = [self._lines(series["current"][part], input_angle[part], sign * input_speed[part]) for part in parts]
             amplitudes = np.concatenate(lines)
             columns |= {_name(order, way): amplitudes[:, place] for place, order in enumerate(self._all_orders)}
@@ -185,7 +185,7 @@ def add_noise(series: dict[str, Array], noise: Mapping[Any, float], seed: int, m
 
     It has the standard deviation of each sample, by the name of the signal.
     """
-    noisy = [name for name in SIGNALS if noise.get(name, 0.0) > 0.0 and name in series]
+    noisy = [name for name in NOISY_SIGNALS if noise.get(name, 0.0) > 0.0 and name in series]
     for row, member in enumerate(members.tolist() if noisy else []):
         generator = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, member]))
         for name in noisy:

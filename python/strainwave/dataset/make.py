@@ -16,10 +16,10 @@ import numpy as np
 
 from strainwave.dataset import runners
 from strainwave.dataset.folder import DatasetFolder
-from strainwave.dataset.members import HEALTHY, Population
-from strainwave.dataset.plan import DatasetPlan
+from strainwave.dataset.members import Population
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan
 from strainwave.dataset.profiles import PROFILES
-from strainwave.dataset.sampling import MIXED
+from strainwave.dataset.sampling import MIXED_SPLIT
 from strainwave.dataset.shards import Shards, write_table
 from strainwave.files.writing import claiming, making, replacing
 from strainwave.messages import one_line
@@ -36,9 +36,9 @@ MIN_BYTES_PER_NUMBER = 2.0  # of a number that varies from member to member, com
 DISK_MARGIN = 1.1  # free bytes over those needed
 Runner = Literal["local", "dask", "slurm"]
 
-PACKAGES = ("strainwave", "numpy", "scipy", "pyarrow")
+RECORDED_PACKAGES = ("strainwave", "numpy", "scipy", "pyarrow")
 MAX_LISTED_CONDITIONS = 20
-ROLES = {
+COLUMN_ROLES = {
     "index": "which member it is",
     "label": "what is to be predicted",
     "split": "which use it is for",
@@ -65,7 +65,7 @@ def manifest(shards: Shards, schema: Any) -> str:
         "name": plan.name,
         "plan_digest": plan.digest,
         "seed": plan.seed,
-        "versions": {name: version(name) for name in PACKAGES} | {"python": platform.python_version()},
+        "versions": {name: version(name) for name in RECORDED_PACKAGES} | {"python": platform.python_version()},
         "machine": platform.machine(),
         "drive": {"gear_set": population.gear_set.name, "parts": population.drive.to_dict()["rows"]},
         "members": plan.members,
@@ -124,7 +124,7 @@ def card(shards: Shards, schema: Any) -> str:
         "|---|---|---|",
         *(f"| `{each.name}` | {shards.column_units()[each.name]} | {each.metadata[b'role'].decode()} |" for each in schema),
         "",
-        *(f"- {role}: {meaning}" for role, meaning in ROLES.items()),
+        *(f"- {role}: {meaning}" for role, meaning in COLUMN_ROLES.items()),
         "",
         "## Limits",
         "",
@@ -168,7 +168,7 @@ def _faults(population: Population) -> list[str]:
     if not plan.faults:
         return ["None: all units are healthy."]
     healthy = 1.0 - sum(table.share for table in plan.faults)
-    rows = [f"| {HEALTHY} | {healthy:.3g} | | |"]
+    rows = [f"| {HEALTHY_LABEL} | {healthy:.3g} | | |"]
     for table in plan.faults:
         onset = "constant" if table.onset is None else table.onset.law
         rows.append(f"| {table.label} | {table.share:.3g} | {_text(table.severity)} | {onset} |")
@@ -196,8 +196,8 @@ def _splits(population: Population) -> list[str]:
         "",
         "- `split_unit`: all members of a unit have one value.",
         "- `split_condition`: all members of a condition have one value.",
-        f"- `split`: the value on which both agree, else `{MIXED}`. Its test members share no unit and no condition with its "
-        "train members.",
+        f"- `split`: the value on which both agree, else `{MIXED_SPLIT}`. Its test members share no unit and no condition with "
+        "its train members.",
         *(f"- Note: {line}." for line in empty_splits(population)),
     ]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
-from strainwave.dataset.plan import DatasetPlan, Range, check_grid, range_of
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan, Range, check_grid, range_of
 from strainwave.dataset.profiles import PROFILES, command_of, peak_speed
 from strainwave.dataset.sampling import Indices, hashed, points, share_of
 from strainwave.files.gear_set import GearSet
@@ -26,7 +26,6 @@ from strainwave.spline_orders import turning_spline_order
 
 Array = NDArray[np.float64]
 
-HEALTHY = "healthy"
 MAX_SIGNAL_FREQUENCY_SHARE = 0.4  # of the sample rate: the highest order at the highest speed
 SPEED_OVERSHOOT = 1.2  # of the actual over the commanded speed
 UNIT_DESIGN, CONDITION_DESIGN, PROFILE_SEED, NOISE_SEED = 0x11, 0x12, 0x13, 0x14  # columns of the hash of the plan's seed
@@ -198,7 +197,7 @@ class Population:
     def unit_faults(self, units: Indices) -> NDArray[np.str_]:
         """Label of the fault of each unit; the shares are met to within one unit."""
         shares = {table.label: table.share for table in self.plan.faults}
-        return share_of(self.plan.seed, "fault", units, self.plan.units.number, shares, HEALTHY)
+        return share_of(self.plan.seed, "fault", units, self.plan.units.number, shares, HEALTHY_LABEL)
 
     def unit_split(self, units: Indices) -> NDArray[np.str_]:
         return share_of(self.plan.seed, "unit", units, self.plan.units.number, self.plan.splits.shares, "test")

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from strainwave.dataset.profiles import LIMITS, PROFILES
+from strainwave.dataset.profiles import PROFILE_LIMITS, PROFILES
 from strainwave.dataset.sampling import grid_levels
 from strainwave.files.gear_file import at, document
 from strainwave.messages import listed, one_line, quoted, shortened
@@ -23,6 +23,7 @@ MAX_CONDITIONS = 100_000  # each has a command of its own, which is checked befo
 MAX_MEMBERS = 10**12
 MAX_SHARD_MEMBERS = 65_536  # in memory at once as a table, not as series
 MAX_SAMPLES = 100_000  # of one member, in memory at once with those of its block
+HEALTHY_LABEL = "healthy"  # of units without a fault
 SHARE_TOLERANCE = 1e-9  # rounding of a sum of shares
 MIN_TEMPERATURE, MAX_TEMPERATURE = 150.0, 500.0  # K
 
@@ -185,7 +186,7 @@ class ConditionTable(PlanTable):
             raise ValueError(
                 f"the profile {self.profile} needs the numbers {needed}; there are {listed(self.numbers) or 'none'}"
             )
-        for name, (low, high) in LIMITS.items():
+        for name, (low, high) in PROFILE_LIMITS.items():
             if name in self.numbers:
                 _within(name, self.numbers[name], low, high, units[name])
         _within("temperature", self.temperature, MIN_TEMPERATURE, MAX_TEMPERATURE, "K")
@@ -273,7 +274,7 @@ class DatasetPlan(PlanTable):
         if total > 1.0 + SHARE_TOLERANCE:
             raise ValueError(f"the shares of the faults sum to {total:g}; they must sum to at most 1, the rest is healthy")
         labels = [fault.label for fault in self.faults]
-        if len({*labels}) < len(labels) or "healthy" in labels:
+        if len({*labels}) < len(labels) or HEALTHY_LABEL in labels:
             raise ValueError(f"the faults {listed(labels)} must have different kinds, none of them healthy")
         if self.features.start > 0.5 * self.simulation.duration:
             raise ValueError(

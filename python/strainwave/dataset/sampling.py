@@ -16,7 +16,7 @@ Words = NDArray[np.uint64]
 SOBOL_BITS = 32
 FEISTEL_ROUNDS = 4  # from this number on the permutation is pseudo-random (Luby and Rackoff 1988)
 SPLIT_COLUMNS = {"unit": 0x51, "condition": 0x52, "fault": 0x53}  # columns of the hash that are kept apart from the designs
-MIXED = "mixed"  # unit and condition are of different splits
+MIXED_SPLIT = "mixed"  # unit and condition are of different splits
 
 
 def hashed(seed: int, column: int, indices: Indices) -> Words:
@@ -85,7 +85,7 @@ def points(design: str, seed: int, count: int, columns: int, first: int, last: i
     """
     if columns == 0:
         return np.empty((last - first, 0))
-    return DESIGNS[design](seed, count, columns, np.arange(first, last))
+    return POINT_DESIGNS[design](seed, count, columns, np.arange(first, last))
 
 
 def _random(seed: int, count: int, columns: int, indices: Indices) -> Array:
@@ -115,7 +115,7 @@ def _sobol(seed: int, count: int, columns: int, indices: Indices) -> Array:
     return drawn
 
 
-DESIGNS: dict[str, Callable[[int, int, int, Indices], Array]] = {
+POINT_DESIGNS: dict[str, Callable[[int, int, int, Indices], Array]] = {
     "grid": _grid,
     "latin": _latin,
     "random": _random,
@@ -137,4 +137,4 @@ def share_of(seed: int, what: str, indices: Indices, count: int, shares: Mapping
 
 def joint(by_unit: NDArray[np.str_], by_condition: NDArray[np.str_]) -> NDArray[np.str_]:
     """Return the split that unit and condition agree on, "mixed" if they do not."""
-    return np.where(by_unit == by_condition, by_unit, MIXED)
+    return np.where(by_unit == by_condition, by_unit, MIXED_SPLIT)

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL, DETECTION_PROBABILITY, FALSE_ALARM, detectable_change
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
+from strainwave.diagnose.replicates import BOTH_DIRECTIONS, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse
 
@@ -30,7 +30,7 @@ MAX_BLOCKS = 24  # of a baseline: shorter blocks contain no more of the drift
 MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
 BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
 SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
-CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
+LINE_CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
 MIN_BLOCKS_FOR_LINE = 10  # blocks, by which a line over a condition is fitted
 MAX_LEFT_OUT_SHARE = 0.8  # of the squared error of left-out blocks [1], to which a line has to reduce it
 MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
@@ -168,7 +168,7 @@ def compared(
     block = blocks_of(motion, baseline.travel)
     cells = cells_of(motion, baseline.orders, block)
     pairs, outside, sparse = [], dict[str, list[str]](), set[str]()
-    for direction, (name, _) in enumerate(SENSES):
+    for direction, (name, _) in enumerate(BOTH_DIRECTIONS):
         for k, order in enumerate(baseline.orders):
             own = [cell for each in cells if (cell := each[direction][k]) is not None]
             if not own:
@@ -185,7 +185,7 @@ def compared(
     planned = sum(order not in new for _, order, _, _ in pairs)
     changes = []
     for name, order, healthy, alike in pairs:
-        tests = float(planned + len(new)) if order not in new else max(searched, 1.0) * len(SENSES)
+        tests = float(planned + len(new)) if order not in new else max(searched, 1.0) * len(BOTH_DIRECTIONS)
         changes.append(_change(name, order, healthy, alike, tests, false_alarm, order in new))
     remarks = [f"{key}; not compared" for key in outside]
     if sparse:
@@ -228,7 +228,7 @@ def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) 
     a revolution of the output without a gap, every place comes again.
     """
     ratio = 1.0 if run.side == "output" else run.ratio
-    turns = float(RATIOS[0]) if ratio is None else ratio  # of the shaft per revolution of the output, at least
+    turns = float(STRAIN_WAVE_RATIOS[0]) if ratio is None else ratio  # of the shaft per revolution of the output, at least
     covered = _joined([(cell.first / turns, cell.last / turns) for cell in known])
     if ratio is not None and any(last - first >= tau for first, last in covered):
         return [False] * len(own), ""
@@ -334,7 +334,7 @@ def _expected(healthy: Sequence[Sequence[Cell]]) -> tuple[str, _Expected]:
     parts = own if len(own) > 1 else [[cell] for cell in cells]  # blocks of a day may share what looks like a condition
     folds = [([cell for other in parts if other is not part for cell in other], part) for part in parts]
     best, least, name = None, np.inf, ""
-    for condition in CONDITIONS if len(cells) >= MIN_BLOCKS_FOR_LINE else ("",):
+    for condition in LINE_CONDITIONS if len(cells) >= MIN_BLOCKS_FOR_LINE else ("",):
         fit = _fitted(condition, cells)
         error = 0.0
         for kept, left_out in folds:

@@ -16,7 +16,7 @@ from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.health import CatalogueLife, HealthIndicator, HealthTrend, catalogue_life, condition, trend
 from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_orders
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
+from strainwave.diagnose.replicates import BOTH_DIRECTIONS, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
 from strainwave.diagnose.smallest_error import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
@@ -470,7 +470,7 @@ def _by_load(motion: JointMotion, orders: Sequence[float]) -> tuple[LoadCell, ..
     levels = LOAD_LEVELS if is_varied else 1
     edges = np.quantile(size[moving] if moving.any() else size, np.linspace(0.0, 1.0, levels + 1))
     places = np.clip(np.searchsorted(edges, size, side="right") - 1, 0, levels - 1)
-    kinds = [(name, sign, level) for name, sign in SENSES for level in range(levels)]
+    kinds = [(name, sign, level) for name, sign in BOTH_DIRECTIONS for level in range(levels)]
     parts = [(shaft.own.sense == sign) & (places == level) for _, sign, level in kinds]
     (cells,) = cells_of(motion, orders, np.zeros(len(size), dtype=int), parts)
     return tuple(

@@ -19,8 +19,8 @@ from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.inversion import (
     COMBINE,
+    ERROR_ORDERS,
     M_PER_MICRON,
-    ORDERS,
     MeasuredOrders,
     MisalignmentEstimate,
     covariance_by,
@@ -50,7 +50,7 @@ MAX_MISFIT_RATIO = 4.0  # a way of sharing whose misfit is larger than the least
 WORDS_OF_SHARING = {"single": "one lobe carries", "mean": "both lobes share the load", "max": "the lobe further out carries"}
 MAX_MISFIT = 8.0  # mean square of the residual of the orders over that of noise and model; by chance 1 record in 10^4 has more
 PENALTY_PER_PARAMETER = 6.0  # of a sum of squares: chance alone gains as much in 1 of 70 records
-SILENT = "e2 and alpha alone change no harmonic and are not identifiable from this record"
+SILENT_PARAMETERS = "e2 and alpha alone change no harmonic and are not identifiable from this record"
 
 
 @dataclass(frozen=True)
@@ -168,9 +168,11 @@ class Geometry(Presented):
             return " ".join([*lines, f"{self.sensitivity.words()}."])
         if self.condition != "misaligned":
             arcmin = 60.0 * np.degrees(self.sensitivity.least_error)
-            lines.append(f"No misalignment shown; errors below {arcmin:.2g} arcmin at order 2 would not be ({SILENT}).")
+            lines.append(
+                f"No misalignment shown; errors below {arcmin:.2g} arcmin at order 2 would not be ({SILENT_PARAMETERS})."
+            )
             return " ".join(lines)
-        lines.append(f"{in_words(*self.ends, self.height)}; {SILENT}.")
+        lines.append(f"{in_words(*self.ends, self.height)}; {SILENT_PARAMETERS}.")
         lines += [f"Not excluded: {in_words(*each, self.height)}." for each in self.others.values()]
         return " ".join(lines)
 
@@ -293,7 +295,7 @@ class _Estimate:
     def penalised(self) -> float:
         """Sum of squares of the residual, and a penalty of each parameter: of two ways that fit, the simpler one is taken."""
         parameters = 3 if self.estimate.combine == "max" else 2
-        return self.estimate.misfit * (2 * len(ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
+        return self.estimate.misfit * (2 * len(ERROR_ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
 
 
 def _estimate(measured: MeasuredOrders, noise: Array, ripple: Complex, gains: Complex, law: Any) -> _Estimate:
@@ -325,9 +327,9 @@ def _spread(values: Complex) -> Array:
 
 
 def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
-    place = ORDERS.index(REFERENCE_ORDER)
+    place = ERROR_ORDERS.index(REFERENCE_ORDER)
     current = error * float(np.abs(gains[:, place].mean()))
-    needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, measured.degrees, len(ORDERS))
+    needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, measured.degrees, len(ERROR_ORDERS))
     resolved = needed * float(measured.noise[place])
     per_torque = error * abs(complex(parts.per_torque[place]))
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)

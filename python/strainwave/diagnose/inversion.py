@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import kinematic_error
-from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, ActuatorRamp
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL, false_alarm_of
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
@@ -27,7 +27,7 @@ Complex = NDArray[np.complex128]
 
 COMBINE = ("single", "mean", "max")
 M_PER_MICRON = 1e-6  # m
-ORDERS = (1.0, 2.0, 3.0, 4.0)
+ERROR_ORDERS = (1.0, 2.0, 3.0, 4.0)
 NOISE_LINES = 14  # the nearest ones, from which the noise of an order is estimated
 SPECTRUM_MARGIN = 0.5  # order, by which the spectrum goes on beyond the highest one
 MIN_NOISE_ORDER = 0.5  # below it lines contain the trend
@@ -36,7 +36,13 @@ PROBE_AMPLITUDE = 2e-5  # rad, of each order of the error with which a drive is 
 SLOPE_STEP = 1e-8  # m, by which slopes of the orders are taken
 TILT_STEP = 1e-5  # rad, by which the eccentricity per tilt is taken
 MAX_RADIUS_SHARE = 0.4  # of the minor radius [1]: bound of m and c_x
-STARTS = ((1.0, 0.0), (1.1, 0.4), (1.1, -0.4), (1.6, 0.8), (1.6, -0.8))  # initial m over a first estimate, and c_x over m
+INITIAL_SHARES = (
+    (1.0, 0.0),
+    (1.1, 0.4),
+    (1.1, -0.4),
+    (1.6, 0.8),
+    (1.6, -0.8),
+)  # initial m over a first estimate, and c_x over m
 GOOD_MISFIT = 2.0  # no further start is tried
 RECORDED_COLUMNS = ("input_angle", "transmission_error", "current")
 CORRECTION_RUNS = 2  # with the estimate; each corrects it
@@ -64,7 +70,7 @@ class MeasuredOrders:
     def false_alarm(self) -> float:
         """Probability that noise alone makes an order as large as the largest one."""
         evidence = float(np.max(np.abs(self.values) ** 2 / (2.0 * self.noise**2)))
-        return false_alarm_of(evidence, 2, self.degrees, len(ORDERS))
+        return false_alarm_of(evidence, 2, self.degrees, len(ERROR_ORDERS))
 
 
 @dataclass(frozen=True)
@@ -138,7 +144,7 @@ class MisalignmentEstimate(Presented):
 
 def phasors(recording: Recording, column: str) -> Complex:
     """Return amplitude and phase of each order of a column, shape (4,)."""
-    orders = order_amplitudes(recording, column, ORDERS)
+    orders = order_amplitudes(recording, column, ERROR_ORDERS)
     return _sines(orders.amplitude, orders.phase)
 
 
@@ -149,16 +155,16 @@ def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
     determine its noise. They come from a spectrum through a Hann window. It adds half to the power of noise, and the powers of
     neighbouring lines correlate by 4/9, of next ones by 1/36. So two lines determine it about as well as one without a window.
     """
-    orders = order_amplitudes(recording, column, ORDERS)
-    spectrum = order_spectrum(recording, column, ORDERS[-1] + SPECTRUM_MARGIN)
+    orders = order_amplitudes(recording, column, ERROR_ORDERS)
+    spectrum = order_spectrum(recording, column, ERROR_ORDERS[-1] + SPECTRUM_MARGIN)
     line = np.rint(spectrum["order"] * orders.revolutions)
     apart, quiet = _noise_lines(line, orders.revolutions)
     if not quiet.any():
-        highest = ORDERS[-1] + SPECTRUM_MARGIN
+        highest = ERROR_ORDERS[-1] + SPECTRUM_MARGIN
         needed = next(k for k in count(1) if _noise_lines(np.arange(1.0, highest * k + 1e-9), k)[1].any())
         raise ValueError(
             f"the ramp has {orders.revolutions:g} whole revolutions of the input after the run-in; the noise of orders "
-            f"{ORDERS[0]:g} to {ORDERS[-1]:g} needs {needed} or more: record a longer stroke"
+            f"{ERROR_ORDERS[0]:g} to {ERROR_ORDERS[-1]:g} needs {needed} or more: record a longer stroke"
         )
     near = np.argsort(np.where(quiet, apart, np.inf), axis=1, kind="stable")[:, : min(NOISE_LINES, int(quiet.sum()))]
     noise = np.sqrt(np.mean(spectrum["amplitude"][near] ** 2, axis=1) / (2.0 * HANN_NOISE_POWER))
@@ -168,7 +174,7 @@ def measured_orders(recording: Recording, column: str) -> MeasuredOrders:
 
 def _noise_lines(line: Array, revolutions: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return the distance of each line from each order [lines], shape (4, n), and True for lines of noise alone, shape (n,)."""
-    apart = np.abs(line - revolutions * np.array(ORDERS)[:, np.newaxis])
+    apart = np.abs(line - revolutions * np.array(ERROR_ORDERS)[:, np.newaxis])
     return apart, (apart.min(axis=0) > 1) & (line > MIN_NOISE_ORDER * revolutions)
 
 
@@ -188,9 +194,9 @@ def runs_with_probe(
 
     The drives differ from the nominal one by numbers. Its kinematic error and the noise of its sensors are left out.
     """
-    law = kinematic_error.Fourier(order=ORDERS, amplitude=[0.0] * len(ORDERS), phase=[0.0] * len(ORDERS))
+    law = kinematic_error.Fourier(order=ERROR_ORDERS, amplitude=[0.0] * len(ERROR_ORDERS), phase=[0.0] * len(ERROR_ORDERS))
     quiet = ramp.without_noise().with_error(law)
-    paths = [f"{ERROR}.amplitude[{place}]" for place in range(len(ORDERS))]
+    paths = [f"{ERROR_PATH}.amplitude[{place}]" for place in range(len(ERROR_ORDERS))]
     members = [{**change, **dict.fromkeys(paths, size)} for change in changes for size in (0.0, PROBE_AMPLITUDE)]
     runs = quiet.many(members, record)
     settled = [quiet.settled(runs.member(place)) for place in range(len(members))]
@@ -207,7 +213,7 @@ def answer_per_error(straight: Recording, probed: Recording, column: str) -> Com
 
 def harmonics(law: Any) -> Complex:
     """Return the orders of a law over a revolution [rad], shape (4,)."""
-    orders = law.harmonics(int(ORDERS[-1]))
+    orders = law.harmonics(int(ERROR_ORDERS[-1]))
     return _sines(np.array(orders.amplitude), np.array(orders.phase))
 
 
@@ -270,7 +276,7 @@ def inverted(error: MeasuredOrders, law: Any, *, with_offset: bool = False) -> t
         return first, misfit
     unit = max(float(np.hypot(*first)), 0.1 * M_PER_MICRON)
     point, misfit = np.append(first, 0.0), np.inf
-    for larger, share in STARTS:
+    for larger, share in INITIAL_SHARES:
         found, left = _least_squares(error, law, larger * np.append(first, share * unit), unit)
         if left < misfit:
             point, misfit = found, left
@@ -289,7 +295,7 @@ def _least_squares(error: MeasuredOrders, law: Any, start: Array, unit: float) -
     begin = np.clip(start / M_PER_MICRON, -0.9 * far, 0.9 * far)
     scale = max(float(np.abs(begin).max()), 1.0) if len(start) == 2 else unit / M_PER_MICRON
     best: Any = least_squares(residual, begin, bounds=(-far, far), x_scale=scale)
-    return M_PER_MICRON * best.x, 2.0 * float(best.cost) / (2 * len(ORDERS) - len(start))
+    return M_PER_MICRON * best.x, 2.0 * float(best.cost) / (2 * len(ERROR_ORDERS) - len(start))
 
 
 def _initial_m(values: Complex, law: Any) -> Array:
@@ -297,7 +303,7 @@ def _initial_m(values: Complex, law: Any) -> Array:
     place = 0 if law.combine == "single" else 1
     ratio = values[place] / harmonics(displaced(law, (M_PER_MICRON, 0.0)))[place]
     size = M_PER_MICRON * float(np.sqrt(abs(ratio)) if law.combine == "mean" else abs(ratio))
-    way = -float(np.angle(ratio)) / ORDERS[place]
+    way = -float(np.angle(ratio)) / ERROR_ORDERS[place]
     return size * np.array([np.cos(way), np.sin(way)])
 
 
@@ -353,7 +359,10 @@ class RecoveryModel(Presented):
     def run(self, points: Sequence[tuple[float, float]], law: Any) -> list[Recording]:
         """Return runs with the shaft at some places m [m], after the run-in."""
         changes = [
-            {f"{ERROR}.housing_eccentricity": float(np.hypot(*m)), f"{ERROR}.housing_direction": float(np.arctan2(m[1], m[0]))}
+            {
+                f"{ERROR_PATH}.housing_eccentricity": float(np.hypot(*m)),
+                f"{ERROR_PATH}.housing_direction": float(np.arctan2(m[1], m[0])),
+            }
             for m in points
         ]
         runs = self.ramp.with_error(law).many(changes, RECORDED_COLUMNS)
@@ -453,7 +462,7 @@ def corrected(
     matrix = to_point(error, law, point)
     step = matrix @ stacked(error.values)
     rest = (stacked(error.values) - slopes(law, point) @ step) / np.tile(error.noise, 2)
-    misfit = float(rest @ rest) / (2 * len(ORDERS) - 2)
+    misfit = float(rest @ rest) / (2 * len(ERROR_ORDERS) - 2)
     m = (float(point[0] + step[0]), float(point[1] + step[1]))
     covariance = covariance_by(matrix, error.noise)
     return MisalignmentEstimate(column, estimate.combine, m, covariance, error.degrees, misfit)

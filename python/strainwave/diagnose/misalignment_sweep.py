@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, LOOPS, OUTPUT, RAMP_CHANNELS, ActuatorRamp
 from strainwave.diagnose.inversion import M_PER_MICRON
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes
@@ -34,7 +34,7 @@ SWEEPS: dict[str, tuple[str, tuple[float, ...], dict[str, float]]] = {
 BOTH_LOOPS = ("e1", "beta")  # sweeps that are run with the loop on the motor encoder, too
 SEEN_ORDERS = (1.0, 2.0, 4.0)
 LOBES = {"single": "one lobe carries", "mean": "both lobes share", "max": "the outer lobe carries"}  # by `combine` of the law
-HEAD = ("error [′]", "torque [N·m]", "peak [1]", "current [mA]", "peak [1]", "output [′]")
+TABLE_HEAD = ("error [′]", "torque [N·m]", "peak [1]", "current [mA]", "peak [1]", "output [′]")
 MIN_TABLE_VALUE = 1e-3  # in the units of the table: nobody would measure less
 
 
@@ -68,7 +68,7 @@ class SweepLevels(Presented):
         return self.table[name][self.rows[sweep]]
 
     def cells(self, sweep: str) -> list[list[str]]:
-        """Return a line for each level of the sweep "e1" or "beta": the level, and what it does in the units of `HEAD`."""
+        """Return a line for each level of the sweep "e1" or "beta": the level, and its effects in the units of `TABLE_HEAD`."""
         lines = []
         for place, level in enumerate(self.column(sweep, SWEEPS[sweep][0])):
             value = {name: float(self.column(sweep, name)[place]) for name in self.table.names}
@@ -102,8 +102,8 @@ def sweep_misalignment(ramp: ActuatorRamp, law: Any) -> SweepLevels:
     2.0
     """
     changes, rows = _members(SWEEPS if ramp.loop == OUTPUT else BOTH_LOOPS)
-    members = [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes]
-    runs = ramp.without_noise().with_error(law).many(members, record=[*CHANNELS, "kinematic_error"])
+    members = [{f"{ERROR_PATH}.{name}": value for name, value in change.items()} for change in changes]
+    runs = ramp.without_noise().with_error(law).many(members, record=[*RAMP_CHANNELS, "kinematic_error"])
     effects = [_effect(ramp, runs, place) for place in range(len(changes))]
     names = dict.fromkeys(name for change in changes for name in change)
     columns = {name: [change.get(name, getattr(law, name)) for change in changes] for name in names}
@@ -174,7 +174,7 @@ def level_lines(found: Sequence[SweepLevels], sweep: str = "e1") -> list[str]:
     >>> print(level_lines([sweep_misalignment(ramp, law.replace(combine="single"))])[2].partition(" carries")[0])
     e₁ = 20 µm, one lobe
     """
-    rows = [[f"loop on the {LOOPS[found[0].loop]}", *HEAD]]
+    rows = [[f"loop on the {LOOPS[found[0].loop]}", *TABLE_HEAD]]
     for levels in found:
         rows += [[f"{level}, {LOBES[levels.combine]}", *cells] for level, *cells in levels.cells(sweep)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

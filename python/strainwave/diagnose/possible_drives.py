@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, arguments
-from strainwave.diagnose.actuator_ramp import ERROR, ActuatorRamp, wave_generator
-from strainwave.diagnose.inversion import ORDERS, answer_per_error, harmonics, phasors, runs_with_probe
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, ActuatorRamp, wave_generator
+from strainwave.diagnose.inversion import ERROR_ORDERS, answer_per_error, harmonics, phasors, runs_with_probe
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes
@@ -145,16 +145,16 @@ def current_per_error(ramp: ActuatorRamp) -> CurrentPerError:
     unit = max(abs(own[1]), inertia * (2.0 * ramp.turning) ** 2 / abs(float(ramp.drive.gear.kinematics.ratio)))
     runs = [own] + [_gain_and_torque(ramp.loaded(ramp.load_torque + share * unit)) for share in ADDED_LOADS[1:]]
     gains, torque = np.array([gain for gain, _ in runs]), np.array([load for _, load in runs])
-    fits = [parts_over_load(gains[:, place], torque, np.ones(len(runs))) for place in range(len(ORDERS))]
+    fits = [parts_over_load(gains[:, place], torque, np.ones(len(runs))) for place in range(len(ERROR_ORDERS))]
     return CurrentPerError(
-        np.array(ORDERS), np.array([fit.constant for fit in fits]), np.array([fit.per_torque for fit in fits]), own[1]
+        np.array(ERROR_ORDERS), np.array([fit.constant for fit in fits]), np.array([fit.per_torque for fit in fits]), own[1]
     )
 
 
 def _gain_and_torque(ramp: ActuatorRamp) -> tuple[Complex, float]:
     """Return current per error at each order [A/rad], and the mean torque through the gear [N.m]."""
     ((straight, probed),) = runs_with_probe(ramp, [{}], ["current", "torque"])
-    return answer_per_error(straight, probed, "current"), order_amplitudes(straight, "torque", ORDERS).mean
+    return answer_per_error(straight, probed, "current"), order_amplitudes(straight, "torque", ERROR_ORDERS).mean
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,9 @@ class PossibleDrives:
         does not have are not changed.
         """
         quiet = self.ramp.without_noise().with_error(law)
-        run = quiet.settled(quiet.many([{f"{ERROR}.housing_eccentricity": law.housing_eccentricity}], ["current"]).member(0))
+        run = quiet.settled(
+            quiet.many([{f"{ERROR_PATH}.housing_eccentricity": law.housing_eccentricity}], ["current"]).member(0)
+        )
         orders = harmonics(law)
         has = np.abs(orders) > MIN_RELATIVE_ORDER * np.abs(orders).max()
         answer = phasors(run, "current") - phasors(self.straight, "current")
@@ -243,7 +245,9 @@ def drawn_changes(gear_set: GearSet | Drive, ramp: ActuatorRamp, members: int, s
     whole = GearSet.of(gear_set, name="drive", source="assumed") if isinstance(gear_set, Drive) else gear_set
     own = every(ramp.drive)
     draws = {
-        path: values for path, values in drawn_gears(whole, members, seed).items() if not path.startswith(ERROR) and path in own
+        path: values
+        for path, values in drawn_gears(whole, members, seed).items()
+        if not path.startswith(ERROR_PATH) and path in own
     }
     return [{path: float(values[member]) for path, values in draws.items()} for member in range(members)]
 
@@ -255,7 +259,7 @@ def trend(recording: Recording) -> tuple[Array, Array]:
     """
     angle, current = recording.values("input_angle", "rad"), recording.values("current", "A")
     terms = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
-    design = np.column_stack([terms, order_waves(angle, ORDERS)])
+    design = np.column_stack([terms, order_waves(angle, ERROR_ORDERS)])
     found = solved(design, current)
     white = float(np.std(np.diff(current - design @ found)) / np.sqrt(2.0))
     covariance = normal_inverse(design)

@@ -28,7 +28,7 @@ TREND_HARMONICS = 2  # of this period, in the load
 LOAD_RIDGE = 1e-3  # of the squared weight [1]
 MIN_CELL_SHARE = 0.05  # of the squared weight of a block: a direction or a load with less has no amplitude
 MIN_CELL_PERIODS = 3.0  # periods of an order in a cell
-SENSES = (("forward", 1.0), ("backward", -1.0))
+BOTH_DIRECTIONS = (("forward", 1.0), ("backward", -1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +147,7 @@ def cells_of(
     into short blocks. Parts of a block are both directions if not given.
     """
     shaft = motion.shaft
-    masks = [shaft.own.sense == sign for _, sign in SENSES] if parts is None else list(parts)
+    masks = [shaft.own.sense == sign for _, sign in BOTH_DIRECTIONS] if parts is None else list(parts)
     waves = order_waves(shaft.own.angle, orders) * shaft.weight[:, None]
     basis = shaft.basis * shaft.weight[:, None]
     weighted = np.concatenate([waves * mask[:, None] for mask in masks], axis=1)

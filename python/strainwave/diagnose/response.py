@@ -11,7 +11,7 @@ import numpy as np
 
 from strainwave import Drive, loads
 from strainwave.diagnose.replicates import JointMotion
-from strainwave.diagnose.smallest_error import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.diagnose.smallest_error import CURRENT_COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 
@@ -61,7 +61,7 @@ def error_response(
 
 def _missing(motion: JointMotion, gear_set: GearSet | None) -> str:
     """Return what the model of the drive lacks; empty if it lacks nothing."""
-    if motion.run.column != COLUMN:
+    if motion.run.column != CURRENT_COLUMN:
         return f"{motion.run.column.replace('_', ' ')} is no current of a motor"
     if not motion.timed:
         return "the speed is not known without time"
@@ -84,7 +84,7 @@ def _by_model(motion: JointMotion, orders: Sequence[float], whole: Drive) -> Err
     per_torque = float(motor.torque_constant) * abs(float(drive.gear.kinematics.ratio))  # N.m/A
     torque = per_torque * motion.load
     if not motion.shaft.own.reverses():  # one direction does not separate load and friction, which the model has
-        friction = abs(float(np.mean(_steady(drive, speed, 0.0, orders).with_error(0.0)[COLUMN])))  # A
+        friction = abs(float(np.mean(_steady(drive, speed, 0.0, orders).with_error(0.0)[CURRENT_COLUMN])))  # A
         torque = per_torque * max(motion.load - (1.0 + FRICTION_SPREAD) * friction, 0.0)
     run = _steady(drive, speed, torque, orders)
     healthy = run.with_error(0.0)

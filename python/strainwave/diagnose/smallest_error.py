@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, kinematic_error, typeset
-from strainwave.diagnose.actuator_ramp import ERROR, longest_step, noises
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, longest_step, noises
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.regression import MAX_SAMPLES, OrderRegression, motion_of, regressions
 from strainwave.files.recording import Recording
@@ -41,7 +41,7 @@ MIN_RUN_IN = 1.0  # s
 MAX_DURATION = 3600.0  # s, of the record
 MIN_TURNS = 3.0  # of the input, in the record
 MIN_SPEED_SHARE = 0.9  # of the speed asked for [1], that a drive must reach
-COLUMN = "current"
+CURRENT_COLUMN = "current"
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class SteadyRun:
                 f"sample_rate = {sample_rate:g} Hz has less than 5 samples in a period of order {order:g}; take "
                 f"{2.5 * order * speed / pi:.4g} Hz or more"
             )
-        if COLUMN not in (known := outputs(drive)):
+        if CURRENT_COLUMN not in (known := outputs(drive)):
             raise ValueError(
                 f"the drive records no current, only {listed(known)}; give it a motor that has one, as DC or CurrentSource"
             )
@@ -99,7 +99,7 @@ class SteadyRun:
     def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
         """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad]."""
         law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
-        drive = self.drive.replace({ERROR: law})
+        drive = self.drive.replace({ERROR_PATH: law})
         ratio = float(drive.gear.kinematics.ratio)
         output = self.speed / abs(ratio)
         length = self.run_in + self.duration
@@ -112,7 +112,7 @@ class SteadyRun:
             sample=1.0 / self.sample_rate,
             load_torque=self.load_torque,
             initial=start,
-            record=["input_angle", "output_angle", COLUMN],
+            record=["input_angle", "output_angle", CURRENT_COLUMN],
         )
         record = run.between(self.run_in, length)
         self._check_speed(record)
@@ -156,7 +156,7 @@ class RecordedOrder:
     @classmethod
     def of(cls, record: Recording, order: float) -> RecordedOrder:
         """Return the regression of an order on a record."""
-        motion = motion_of(record, COLUMN, order)
+        motion = motion_of(record, CURRENT_COLUMN, order)
         return cls(regressions(motion, [order])[0], motion.series, motion.every, motion.revolutions)
 
     @property

@@ -9,10 +9,12 @@ from math import exp, inf, log, pi, sqrt
 from strainwave.orders.lines import SpectrumLine
 from strainwave.presentation import Presented
 
-RATIOS = range(30, 401)  # of strain wave gears
+STRAIN_WAVE_RATIOS = range(30, 401)  # of strain wave gears
 USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
 USUAL_PREFERENCE = 4.0  # logarithm of the prior odds of these over others (assumed)
-MIN_LINE_ORDER = 2.0 * RATIOS[0]  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
+MIN_LINE_ORDER = (
+    2.0 * STRAIN_WAVE_RATIOS[0]
+)  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
 MIN_LINE_PERIODS = 20.0  # in the span of the angle: fewer are hysteresis, and friction that varies over the angle
 WAVE_ORDERS = {2.0: 0.45, 4.0: 0.11, 1.0: 0.09, 3.0: 0.02, 6.0: 0.02, 8.0: 0.01}  # prior share of lines by order (assumed)
 MAX_MOTOR_ORDER = 48  # pole pairs, slots and their multiples
@@ -72,7 +74,7 @@ def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float)
     usable = usable_lines(lines, resolution)
     if not usable:
         return ()
-    priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in RATIOS}
+    priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in STRAIN_WAVE_RATIOS}
     whole = sum(priors.values())
     range_of_logarithms = log(max(highest, 2.0 * MIN_LINE_ORDER) / MIN_LINE_ORDER)
     scores = {}

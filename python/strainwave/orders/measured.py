@@ -17,9 +17,15 @@ from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.presentation import Presented
 from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError
 
-EFFORTS = ("joint_torque", "torque", "input_torque", "current", "vibration")  # in which ripple is looked for, the best first
-ANGLES: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
-SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
+EFFORT_COLUMNS = (
+    "joint_torque",
+    "torque",
+    "input_torque",
+    "current",
+    "vibration",
+)  # in which ripple is looked for, the best first
+ANGLE_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
+SPEED_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +75,7 @@ def orders_found(
     """
     if side is not None:
         arguments.one_of("side", side, ("input", "output"))
-    effort = next((each for each in EFFORTS if each in recording), None)
+    effort = next((each for each in EFFORT_COLUMNS if each in recording), None)
     if "input_angle" in recording and "output_angle" in recording:
         load = next((each for each in ("joint_torque", "current") if each in recording), "")
         both = [each for each in ("time", "input_angle", "output_angle", load) if each in recording]
@@ -102,10 +108,10 @@ def orders_found(
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
     """Return the recording with an angle, its name and side, and what was done for it."""
-    for name, known in ANGLES:
+    for name, known in ANGLE_COLUMNS:
         if name in recording:
             return recording, name, _side(name, known, side), ()
-    for name, known in SPEEDS:
+    for name, known in SPEED_COLUMNS:
         if name not in recording:
             continue
         if "time" not in recording and rate is None:

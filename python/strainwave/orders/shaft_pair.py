@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.messages import as_option
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
@@ -50,7 +50,7 @@ class Ratio(Presented):
     @property
     def of_strain_wave(self) -> bool:
         """True if a strain wave gear may have the ratio used."""
-        return abs(self.used) in RATIOS
+        return abs(self.used) in STRAIN_WAVE_RATIOS
 
 
 @dataclass(frozen=True)

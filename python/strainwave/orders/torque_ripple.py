@@ -16,7 +16,15 @@ from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
-from strainwave.orders.comb import MIN_LINE_ORDER, RATIOS, RatioCandidate, candidates, conclusive, lowest_usable, usable_lines
+from strainwave.orders.comb import (
+    MIN_LINE_ORDER,
+    STRAIN_WAVE_RATIOS,
+    RatioCandidate,
+    candidates,
+    conclusive,
+    lowest_usable,
+    usable_lines,
+)
 from strainwave.orders.lines import (
     MERGE_PERIODS,
     MIN_PERIODS,
@@ -36,7 +44,7 @@ if TYPE_CHECKING:
 
 Side = Literal["input", "output"]
 
-MIN_RATIO = float(RATIOS[0])  # of strain wave gears that makers offer
+MIN_RATIO = float(STRAIN_WAVE_RATIOS[0])  # of strain wave gears that makers offer
 TYPICAL_RATIO = 100.0
 MAX_RATIO = 161.0
 MAX_INPUT_ORDER = 20.0  # order of the input up to which is looked, without a limit given

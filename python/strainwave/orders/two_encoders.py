@@ -41,8 +41,8 @@ OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gr
 MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow one or two periods of any wave
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
-LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
-CHANGING = "they change with the speed, as by a vibration of the output that the record does not determine"
+LOAD_UNITS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
+WHY_AMPLITUDES_CHANGE = "they change with the speed, as by a vibration of the output that the record does not determine"
 MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which its amplitudes are those of one speed
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
@@ -218,7 +218,7 @@ def transmission_error(
     check_recording("recording", recording)
     wanted = np.unique(arguments.positive_series("orders", orders))
     false_alarm = arguments.probability("false_alarm", false_alarm)
-    load = next((name for name in LOADS if name in recording), None)
+    load = next((name for name in LOAD_UNITS if name in recording), None)
     if ratio is None and isinstance(recording, Run):
         ratio = recording.end.drive.gear.kinematics.ratio
     pair = _pair(recording, load, rate)
@@ -363,7 +363,7 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     """Return the twist per torque or current, fitted with direction, speed and acceleration of the input."""
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
-    unit, speed = LOADS[load], pair.speed
+    unit, speed = LOAD_UNITS[load], pair.speed
     driven = convert(pair.record.columns[load], recording.unit(load), unit)
     loads = np.stack([driven, direction(speed), speed, smooth_speed(speed, reach_of(len(twist)))], axis=1)
     fit = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
@@ -409,7 +409,7 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
     if not speeds:
         return []
-    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else CHANGING
+    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else WHY_AMPLITUDES_CHANGE
     return [
         f"amplitudes are those measured at {speeds}: {why}, and they are not corrected for it; if speeds from slow to fast are "
         "in one record, they are"

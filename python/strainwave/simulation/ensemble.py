@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-WHOLE = {
+COUNTED_NAMES = {
     field["name"]
     for kinds in _core.families.values()
     for kind in kinds.values()
@@ -539,7 +539,7 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
             limits = lowest + (", inf)" if high == np.inf else f", {high:g}]")  # in the notation of the models
             value = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
             raise ValueError(f"{path} = {value} of member {wrong[0]} must lie in {limits}")
-        if path.rpartition(".")[2] in WHOLE and (broken := np.flatnonzero(values[path] % 1.0)).size:
+        if path.rpartition(".")[2] in COUNTED_NAMES and (broken := np.flatnonzero(values[path] % 1.0)).size:
             raise ValueError(f"{path} = {values[path][broken[0]]:g} of member {broken[0]} must be a whole number")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())

@@ -19,7 +19,7 @@ from strainwave.simulation.time_grid import (
     BYTES_PER_STEP,
     LONG_RUN,
     LONGER_STEPS,
-    NEVER,
+    NO_INSTANTS,
     TimeGrid,
     check_instants,
     check_room,
@@ -79,7 +79,7 @@ class Excitation:
     def _scenarios(self) -> list[Scenario]:
         return [signal for signal in (self.command, self.load, self.temperature) if isinstance(signal, Scenario)]
 
-    def time_grid(self, dt: float, samples: float | Array | None, instants: Array = NEVER) -> TimeGrid:
+    def time_grid(self, dt: float, samples: float | Array | None, instants: Array = NO_INSTANTS) -> TimeGrid:
         """The steps that follow it, and end at `instants`, at which a controller acts."""
         breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
         return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)

@@ -18,12 +18,12 @@ Array = NDArray[np.float64]
 MAX_STEP_PHASE = 1.0  # rad: step times angular frequency of a drive's own motion
 FASTEST_ON_BRISTLES = 2.0  # rad: step times angular frequency of a shaft on its bristles, beyond which fixed steps may be wrong
 MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")  # that let currents decay faster
-LARGEST: float = _core.largest  # of all that is recorded
+LARGEST_OUTPUT: float = _core.largest  # of all that is recorded
 
 
 def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
     """Return the message that names the first output without meaning and its time; outputs of shape (names, samples)."""
-    sound = np.abs(outputs) <= LARGEST  # neither not-a-number nor out of all bounds
+    sound = np.abs(outputs) <= LARGEST_OUTPUT  # neither not-a-number nor out of all bounds
     where = int(np.argmin(sound.all(axis=0)))
     wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
     place = f" at t = {time[where]:.6g} s ({listed(wrong)})" if wrong else ""

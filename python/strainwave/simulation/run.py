@@ -18,9 +18,16 @@ from strainwave.native import kernels
 from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
+from strainwave.simulation.resolution import (
+    FASTEST_ON_BRISTLES,
+    LARGEST_OUTPUT,
+    check_resolution,
+    diverged,
+    remedy,
+    warn_of_bristles,
+)
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.signals import TWIST, Output
+from strainwave.simulation.signals import TWIST_CHANNEL, Output
 from strainwave.simulation.state import Initial, State, beginning_numbers, known
 from strainwave.simulation.threads import StepCounter, side_by_side
 from strainwave.simulation.time_grid import (
@@ -38,7 +45,7 @@ from strainwave.simulation.time_grid import (
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
 
-METHODS: dict[Method, str] = {
+METHOD_WORDS: dict[Method, str] = {
     "exponential": "exponential Runge-Kutta",
     "moreau_jean": "Moreau-Jean time-stepping",
     "rosenbrock": "Rosenbrock W-method",
@@ -169,7 +176,7 @@ def simulate(
     'exponential Runge-Kutta, steps of 0.0002 s'
     """
     if method is not None:
-        arguments.one_of("method", method, METHODS)
+        arguments.one_of("method", method, METHOD_WORDS)
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
@@ -251,7 +258,7 @@ class Course(NamedTuple):
         check_resolution(self.drive, self.time_grid.longest, twist, temperature)
 
     def largest_twist(self, outputs: Array) -> float:
-        return float(np.abs(outputs[self.channels.index(TWIST)]).max())
+        return float(np.abs(outputs[self.channels.index(TWIST_CHANNEL)]).max())
 
     def run(self, outputs: Array, state: Array, method: str, unit: str | None = None) -> Run:
         """The run that ends in a state, with a unit of the command where it is not the drive's own."""
@@ -273,7 +280,7 @@ def check_samples(duration: float, interval: float, columns: float) -> None:
 def channels_of(recorded: Mapping[str, Output]) -> list[int]:
     """Return the channels of the recorded outputs and of the twist, which determines whether steps were short enough."""
     channels = [output.channel for output in recorded.values()]
-    return channels if TWIST in channels else [*channels, TWIST]
+    return channels if TWIST_CHANNEL in channels else [*channels, TWIST_CHANNEL]
 
 
 def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int], samples: int) -> Array:
@@ -290,7 +297,7 @@ def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int],
 
 def _named(method: Method, drive: Drive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
-    return METHODS[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
+    return METHOD_WORDS[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
 
 
 def simulate_adaptively(
@@ -426,7 +433,7 @@ def columns_of(time: Array, recorded: Mapping[str, Output], outputs: Array) -> d
 
 
 def check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
-    if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
+    if not (outputs.max() <= LARGEST_OUTPUT and outputs.min() >= -LARGEST_OUTPUT):
         names = [*recorded, "twist"][: len(outputs)]
         raise FloatingPointError(diverged(time, names, outputs, what_to_do))
 

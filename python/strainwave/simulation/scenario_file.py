@@ -32,10 +32,10 @@ from strainwave.simulation import scenario
 from strainwave.simulation.run import Run, simulate, simulate_adaptively
 from strainwave.simulation.scenario import Scenario, Wave
 from strainwave.simulation.signals import command_unit
-from strainwave.simulation.state import QUANTITIES
+from strainwave.simulation.state import INITIAL_QUANTITIES
 
-WRITTEN = '{ value = 5.0, unit = "deg" }'
-TEXTS = ("name", "note")
+UNIT_EXAMPLE = '{ value = 5.0, unit = "deg" }'
+TEXT_KEYS = ("name", "note")
 
 
 def pieces(
@@ -68,7 +68,7 @@ def pieces(
     return Scenario(duration, np.asarray(start), np.asarray(level), np.asarray(slope), waves)
 
 
-KINDS: dict[str, Callable[..., Scenario]] = {
+SIGNAL_KINDS: dict[str, Callable[..., Scenario]] = {
     each.__name__: each
     for each in (
         scenario.constant,
@@ -81,11 +81,11 @@ KINDS: dict[str, Callable[..., Scenario]] = {
         pieces,
     )
 }
-SECONDS = ("start", "period", "width", "time")
-HERTZ = ("frequency", "start_frequency", "stop_frequency", "wave_frequency")
-RADIANS = ("phase", "wave_phase")
-RATES = ("rate", "slope")  # of the signal per second; the unit of all arguments not named here is that of the signal
-DIFFERENCES = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC more are 5 K, not 278.15 K
+IN_SECONDS = ("start", "period", "width", "time")
+IN_HERTZ = ("frequency", "start_frequency", "stop_frequency", "wave_frequency")
+IN_RADIANS = ("phase", "wave_phase")
+PER_SECOND = ("rate", "slope")  # of the signal per second; the unit of all arguments not named here is that of the signal
+DIFFERENCE_ARGUMENTS = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC more are 5 K, not 278.15 K
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class ScenarioFile(Presented):
             else:
                 arguments.number(name, signal)
         for name, value in self.initial.items():
-            arguments.number(arguments.one_of("the name of a quantity in initial", name, QUANTITIES), value)
+            arguments.number(arguments.one_of("the name of a quantity in initial", name, INITIAL_QUANTITIES), value)
         if arguments.text("name", self.name):
             check_line("name", self.name)
         arguments.text("note", self.note)
@@ -278,7 +278,7 @@ def _from_columns(points: Recording, units: Mapping[str, str]) -> ScenarioFile:
 
 def _from_toml(content: Mapping[str, Any], units: Mapping[str, str]) -> ScenarioFile:
     for key in content:
-        _check_known(key, (*TEXTS, "duration", *units, "initial"))
+        _check_known(key, (*TEXT_KEYS, "duration", *units, "initial"))
     if "duration" not in content:
         raise ValueError("duration is missing; write duration = 2.0, in s")
     if "command" not in content:
@@ -288,17 +288,17 @@ def _from_toml(content: Mapping[str, Any], units: Mapping[str, str]) -> Scenario
     command = signals.pop("command")
     if not isinstance(command, Scenario):
         command = scenario.constant(command, duration)
-    texts = {key: arguments.text(key, content[key]) for key in TEXTS if key in content}
+    texts = {key: arguments.text(key, content[key]) for key in TEXT_KEYS if key in content}
     return ScenarioFile(command, signals, _initial(content.get("initial", {})), **texts)
 
 
 def _initial(given: Any) -> dict[str, float]:
     if not isinstance(given, dict):
-        raise ValueError(f"initial = {shortened(given)} must be a table; write [initial] with output_angle = {WRITTEN}")
+        raise ValueError(f"initial = {shortened(given)} must be a table; write [initial] with output_angle = {UNIT_EXAMPLE}")
     with at("initial:"):
         for name in given:
-            _check_known(name, QUANTITIES)
-    return {name: _number(f"initial.{name}", value, QUANTITIES[name][1]) for name, value in given.items()}
+            _check_known(name, INITIAL_QUANTITIES)
+    return {name: _number(f"initial.{name}", value, INITIAL_QUANTITIES[name][1]) for name, value in given.items()}
 
 
 def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | float:
@@ -318,7 +318,7 @@ def _has_kind(given: Any) -> bool:
 
 
 def _kinds() -> str:
-    return " or ".join(map(quoted, KINDS))
+    return " or ".join(map(quoted, SIGNAL_KINDS))
 
 
 def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> Scenario:
@@ -327,11 +327,11 @@ def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> S
         raise ValueError(f"{place} = {shortened(given)} must be a table with kind = {_kinds()}")
     if (kind := given.get("kind")) is None:
         raise ValueError(f"{place}.kind is missing; write kind = {_kinds()}")
-    if not isinstance(kind, str) or kind not in KINDS:
-        near = get_close_matches(str(kind).lower(), KINDS, n=1)
+    if not isinstance(kind, str) or kind not in SIGNAL_KINDS:
+        near = get_close_matches(str(kind).lower(), SIGNAL_KINDS, n=1)
         hint = f"{'; near it is ' * bool(near)}{''.join(near)}; write kind = {_kinds()}"
         raise ValueError(f"{place}.kind = {shortened(kind)} is not known{hint}")
-    known = inspect.signature(KINDS[kind]).parameters
+    known = inspect.signature(SIGNAL_KINDS[kind]).parameters
     entries = {key: value for key, value in given.items() if key != "kind"}
     with at(f"{place}: {kind}:"):
         for key in entries:
@@ -340,20 +340,20 @@ def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> S
     if missing := [name for name in needed if name not in entries]:
         raise ValueError(f"{place}.{missing[0]} is missing; {kind} needs {listed(needed)}")
     numbers = {
-        key: _numbers(f"{place}.{key}", value, _unit_of(key, unit), first and key not in DIFFERENCES)
+        key: _numbers(f"{place}.{key}", value, _unit_of(key, unit), first and key not in DIFFERENCE_ARGUMENTS)
         for key, value in entries.items()
     }
     with at(f"{place}:"):
-        made = KINDS[kind](**numbers, **({"duration": duration} if "duration" in known else {}))
+        made = SIGNAL_KINDS[kind](**numbers, **({"duration": duration} if "duration" in known else {}))
     _check_duration(place, made, duration)
     return made
 
 
 def _unit_of(argument: str, unit: str) -> str:
     """The unit of an argument of a signal in this unit."""
-    if argument in RATES:
+    if argument in PER_SECOND:
         return f"{unit}/s"
-    named = {"s": SECONDS, "Hz": HERTZ, "rad": RADIANS, "Hz/s": ("wave_sweep",)}
+    named = {"s": IN_SECONDS, "Hz": IN_HERTZ, "rad": IN_RADIANS, "Hz/s": ("wave_sweep",)}
     return next((own for own, names in named.items() if argument in names), unit)
 
 
@@ -386,7 +386,7 @@ def _with_unit(place: str, given: dict[str, Any]) -> tuple[Any, str]:
         for key in given:
             _check_known(key, ("value", "unit"))
     if missing := [key for key in ("value", "unit") if key not in given]:
-        raise ValueError(f"{place}.{missing[0]} is missing; write {WRITTEN}, or a number in SI units")
+        raise ValueError(f"{place}.{missing[0]} is missing; write {UNIT_EXAMPLE}, or a number in SI units")
     return given["value"], arguments.text(f"{place}.unit", given["unit"])
 
 
@@ -395,7 +395,7 @@ def _with_unit(place: str, given: dict[str, Any]) -> tuple[Any, str]:
 
 def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of the file: texts and numbers before tables."""
-    content: dict[str, Any] = {key: text for key in TEXTS if (text := getattr(given, key))}
+    content: dict[str, Any] = {key: text for key in TEXT_KEYS if (text := getattr(given, key))}
     content["duration"] = _quantity(given.command.duration, "s")
     signals = {"command": given.command, **given.inputs}
     constant = {name: value for name, value in signals.items() if not isinstance(value, Scenario)}
@@ -409,7 +409,9 @@ def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
                 for kind, entries in terms
             ]
     if given.initial:
-        content["initial"] = {name: _quantity(float(value), QUANTITIES[name][1]) for name, value in given.initial.items()}
+        content["initial"] = {
+            name: _quantity(float(value), INITIAL_QUANTITIES[name][1]) for name, value in given.initial.items()
+        }
     return content
 
 
@@ -455,6 +457,6 @@ def _pieces(signal: Scenario) -> tuple[str, dict[str, Any]]:
 
 def _sum_of(terms: Terms, duration: float) -> Scenario | None:
     try:
-        return reduce(add, [KINDS[kind](**entries, duration=duration) for kind, entries in terms])
+        return reduce(add, [SIGNAL_KINDS[kind](**entries, duration=duration) for kind, entries in terms])
     except ValueError:  # what a kind refuses, as a wave of negative frequency
         return None

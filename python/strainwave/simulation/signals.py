@@ -59,7 +59,7 @@ def any_of(kind: Any) -> Any:
     return kind(**{field["name"]: field["default"] for field in kind.fields if field["required"]})
 
 
-TWIST = outputs(Drive())["twist"].channel
+TWIST_CHANNEL = outputs(Drive())["twist"].channel
 
 
 def chosen(drive: Drive, record: Sequence[str]) -> Mapping[str, Output]:

@@ -17,7 +17,7 @@ from strainwave.simulation.signals import load_input, outputs
 Array = NDArray[np.float64]
 Known = tuple[list[int], Array]  # the numbers of quantities, and their values, shape (quantities, members)
 
-QUANTITIES = {name: (number, unit) for number, (name, unit, _) in enumerate(_core.quantities)}
+INITIAL_QUANTITIES = {name: (number, unit) for number, (name, unit, _) in enumerate(_core.quantities)}
 
 
 class State(Presented, Mapping[str, float]):
@@ -191,10 +191,10 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
         arguments.mapping("initial", initial, '{"output_angle": 0.3, "input_speed": 5.0}')
     values = {name: _value(str(name), value, members) for name, value in (initial or {}).items()}
     for name in values:
-        arguments.one_of("the name of a quantity in initial", name, tuple(QUANTITIES))
+        arguments.one_of("the name of a quantity in initial", name, tuple(INITIAL_QUANTITIES))
     _check_together(drive, set(values), prescribed)
     rows = [np.broadcast_to(value, members) for value in values.values()]
-    return [QUANTITIES[name][0] for name in values], np.array(rows, dtype=np.float64).reshape(len(rows), members)
+    return [INITIAL_QUANTITIES[name][0] for name in values], np.array(rows, dtype=np.float64).reshape(len(rows), members)
 
 
 def _value(name: str, value: ArrayLike, members: int) -> Array:

@@ -17,7 +17,7 @@ from strainwave.equality import ComparedByFields
 
 Array = NDArray[np.float64]
 
-NEVER = np.empty(0)
+NO_INSTANTS = np.empty(0)
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
 BYTES_PER_STEP, BYTES_PER_INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"

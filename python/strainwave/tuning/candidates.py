@@ -30,7 +30,7 @@ from strainwave.tuning.loops import Loops, sampled_cascade
 
 Array = NDArray[np.float64]
 
-EFFECTS = {
+GEAR_EFFECTS = {
     "friction": ("friction_input", "friction_mesh", "friction_output"),
     "torsion": ("stiffness", "hysteresis", "softening"),
     "kinematic error": ("kinematic_error",),
@@ -95,7 +95,7 @@ def candidates(
     For a motion that creeps, friction is also supplied by the measured motion.
     """
     gear = plant.drive.gear
-    present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
+    present = [effect for effect in GEAR_EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
     if is_line(plant.drive):  # which the cascade feeds forward, too
         present.remove("friction")
     choices = [each for count in range(1, len(present) + 1) for each in combinations(present, count)]
@@ -277,7 +277,7 @@ def _compensation(plant: Plant, effects: tuple[str, ...], setting: Setting) -> C
 
 def with_effects(gear: Gear, effects: tuple[str, ...], temperature: float = ROOM_TEMPERATURE) -> Gear:
     """Return a gear of which only some effects are known, and the line of its friction at a temperature [K]."""
-    parts = {part: getattr(gear, part) for effect in effects for part in EFFECTS[effect]}
+    parts = {part: getattr(gear, part) for effect in effects for part in GEAR_EFFECTS[effect]}
     return bare(gear, temperature).replace(**parts)
 
 
@@ -290,7 +290,7 @@ def has_effect(gear: Gear, effect: str) -> bool:
         return steepest_error(gear) > 0.0
     return any(
         getattr(gear, part) != getattr(none.replace(stiffness=stiffness.Linear(k=RIGID_STIFFNESS)), part)
-        for part in EFFECTS[effect]
+        for part in GEAR_EFFECTS[effect]
     )
 
 

@@ -20,7 +20,7 @@ from strainwave.presentation import Pictured, Reported, Row
 from strainwave.progress import Progress, in_turn
 from strainwave.simulation.run import simulate
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
+from strainwave.tuning.candidates import GEAR_EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
@@ -47,7 +47,7 @@ TORQUE_FREQUENCY = 1.0  # Hz, at which the torque goes to and fro
 STOP_STIFFNESS_RATIO = 1.0  # of the stop over the gear at the torque that is wanted
 CREEP_DURATION = 4.0  # s
 MIN_BANDWIDTH_RATIO = 5.0  # of the position loop over the pace of the motion
-MEASUREMENTS = {
+MEASUREMENT_OF_EFFECT = {
     "friction": "a friction table or a log of motion determines it",
     "torsion": "a torsion loop determines it",
     "kinematic error": "a record of both encoders over whole turns of the output determines it",
@@ -348,16 +348,17 @@ def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
 def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
     """Yield what was assumed, and what cannot be gained."""
     yield from _of_the_drive(gear_set, plant, goal)
-    for effect in EFFECTS:
+    for effect in GEAR_EFFECTS:
         if not has_effect(plant.drive.gear, effect):
-            yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
+            remedy = MEASUREMENT_OF_EFFECT[effect]
+            yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {remedy}"
         elif too_steep(plant, effect):
             yield f"the {effect} is too steep to be fed forward: its slope times the ratio reaches 1"
         elif names := assumed_numbers(gear_set, effect):
             numbers = _all_of(gear_set, effect)
             unknown = any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in numbers)
             spread = f"{'any phase and ' if unknown else ''}more or less of it by a factor of up to 1.3"
-            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
+            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENT_OF_EFFECT[effect]}"
     margins = margins_of(plant, best.candidate.setting)
     bandwidth, modulus = margins.position.crossover, margins.modulus
     if modulus and bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
@@ -383,7 +384,7 @@ def numbers_of(gear_set: GearSet, effect: str) -> list[Parameter]:
 
 
 def _all_of(gear_set: GearSet, effect: str) -> list[Parameter]:
-    begins = tuple(f"{part}." for part in EFFECTS[effect])
+    begins = tuple(f"{part}." for part in GEAR_EFFECTS[effect])
     return [each for path, each in every(gear_set.gear).items() if path.startswith(begins)]
 
 

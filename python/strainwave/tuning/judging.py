@@ -15,7 +15,7 @@ from strainwave.presentation import Presented
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import EFFECTS, ControllerCandidate
+from strainwave.tuning.candidates import GEAR_EFFECTS, ControllerCandidate
 from strainwave.tuning.cascade import Plant, steady_torque
 from strainwave.tuning.drawn import scales
 from strainwave.tuning.goals import Goal
@@ -27,9 +27,9 @@ MAX_SHARE_AT_LIMIT = 0.01  # of the time, of a run that counts
 AT_LIMIT = "the motor is at its limit"  # reason of a run that failed
 MAX_STEP = 2e-4  # s, of the simulation
 STEP_OF_VIBRATION = 0.7  # rad of the fastest vibration in a step, so that a stiffer gear is followed, too
-PACES = {"half the speed": 0.5, "1.5 times the speed": 1.5}
-INERTIAS = {"half the inertia of the load": 0.5, "1.5 times the inertia of the load": 1.5}
-TEMPERATURES = {"cold, 0 °C": 273.15, "warm, 60 °C": 333.15}  # K
+OTHER_PACES = {"half the speed": 0.5, "1.5 times the speed": 1.5}
+OTHER_INERTIAS = {"half the inertia of the load": 0.5, "1.5 times the inertia of the load": 1.5}
+OTHER_TEMPERATURES = {"cold, 0 °C": 273.15, "warm, 60 °C": 333.15}  # K
 INITIAL_TEMPERATURE = "thermal.initial_temperature"  # of a gear that heats up; that of any other is the temperature around it
 SMALLER_BY = (1.25, 1.5, 2.0, 3.0)  # factors of an effect, of which the drive has less than the model
 SPEED_OF_FRICTION = 20.0  # rad/s of the input, at which friction is compared between temperatures
@@ -138,21 +138,23 @@ def conditions(
         return ConditionResult(name, *(judged(each.candidate, goal, drawn, plant, **changes) for each in controllers))
 
     usual = goal_at(1.0)
-    for name, pace in PACES.items():
+    for name, pace in OTHER_PACES.items():
         yield at(name, goal_at(pace), draws)
     numbers, members = every(plant.drive), len(controllers[0].figures[usual.judged_by])
     inertia = draws.get("load.inertia", np.full(members, numbers["load.inertia"].value))
-    for name, factor in INERTIAS.items():
+    for name, factor in OTHER_INERTIAS.items():
         yield at(name, usual, {**draws, "load.inertia": factor * inertia})
     if depends_on_temperature(plant.drive):
-        for name, temperature in TEMPERATURES.items():
+        for name, temperature in OTHER_TEMPERATURES.items():
             start = {INITIAL_TEMPERATURE: np.full(members, temperature)} if INITIAL_TEMPERATURE in numbers else {}
             yield at(name, usual, {**draws, **start}, temperature=temperature)
 
 
 def depends_on_temperature(drive: Drive) -> bool:
     """True if friction or spring of a gear change with its temperature."""
-    cold, warm = (steady_torque(drive.gear, SPEED_OF_FRICTION, temperature=each).friction for each in TEMPERATURES.values())
+    cold, warm = (
+        steady_torque(drive.gear, SPEED_OF_FRICTION, temperature=each).friction for each in OTHER_TEMPERATURES.values()
+    )
     return bool(cold != warm) or any(
         number.value and number.unit == "1/K" for path, number in every(drive).items() if path.startswith("gear.softening")
     )
@@ -199,7 +201,7 @@ def over_compensation(controllers: tuple[Judged, Judged], goal: Goal, plant: Pla
 
 def smaller_effect(drive: Drive, effect: str, factors: Array) -> dict[str, Array]:
     """Return numbers of drives of which an effect is smaller by factors: a spring has less twist if its torques are larger."""
-    begins = tuple(f"gear.{part}." for part in EFFECTS[effect])
+    begins = tuple(f"gear.{part}." for part in GEAR_EFFECTS[effect])
     there = {
         path: number
         for path, number in every(drive).items()

@@ -14,7 +14,7 @@ from strainwave.tuning.cascade import Plant, line_of_friction
 
 Array = NDArray[np.float64]
 
-MEASURED = ("input_angle", "input_speed", "output_speed", "transmission_error")  # by the encoders of both shafts
+ENCODER_STATES = ("input_angle", "input_speed", "output_speed", "transmission_error")  # by the encoders of both shafts
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class LinearPlant:
 
     def measured_by_encoders(self) -> LinearPlant:
         """Return the plant; refuse one with states besides angle and speed of both shafts."""
-        if sorted(self.states) != sorted(MEASURED):
+        if sorted(self.states) != sorted(ENCODER_STATES):
             raise ValueError(
                 f"the states of the drive are {listed(self.states)}, and encoders measure only angle and speed of both shafts; "
                 "take the lumped gear (structure.Lumped) and a load that is one inertia"

@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 USUAL_RESOLUTION = 2.0 * np.pi / 2**14  # rad: an encoder of 14 bit on the motor
 NOISE_SHARE = 0.01  # of the torque limit, as the standard deviation of the torque over a period
 RATE_SHARE = 1.0  # of the torque limit, by which the disturbance wanders in 1 s
-MAX_STATES, INPUTS = 8, 8  # of control.StateSpace
+MAX_STATES, MAX_INPUTS = 8, 8  # of control.StateSpace
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def _law(
     by_jump = after @ jumps
     step = np.zeros((size + 1, size + 1))
     step[:size, :size], step[:size, size] = closed @ after, closed @ by_jump
-    inputs, direct = np.zeros((size + 1, INPUTS)), np.zeros(INPUTS)
+    inputs, direct = np.zeros((size + 1, MAX_INPUTS)), np.zeros(MAX_INPUTS)
     inputs[:size, 0], direct[0] = -closed @ corrects, feedback @ corrects
     # the jump is what command and rate differ by from the command of the instant before, carried on by both rates
     inputs[:size, -2], inputs[:size, -1] = -closed @ by_jump, half * closed @ by_jump

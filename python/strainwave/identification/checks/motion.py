@@ -23,7 +23,7 @@ from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, is_uncertain
 from strainwave.identification.results.held_out import HeldOut
 from strainwave.messages import as_option
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.orders.torque_ripple import ripple
 from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.linear_fit import solved
@@ -193,7 +193,7 @@ def _coarser(recording: Recording, column: str) -> Recording:
     angle = np.unwrap(recording.values("output_angle", "rad"))
     step = np.abs(np.diff(angle))
     usual = float(np.median(step[step > 0.0])) if np.any(step > 0.0) else np.inf
-    period = np.pi / (RATIOS[-1] * usual)  # of the main line, in rows
+    period = np.pi / (STRAIN_WAVE_RATIOS[-1] * usual)  # of the main line, in rows
     every = max(1, min(int(period / MIN_ROWS_PER_PERIOD), len(angle) // MAX_ROWS_OF_RIPPLE))
     rows = min(len(angle) // every, MAX_ROWS_OF_RIPPLE) * every
     names = [name for name in ("time", "output_angle", column) if name in recording]

@@ -14,7 +14,7 @@ from strainwave.identification.reading.sides import pair, sides_of_angles
 from strainwave.identification.results.curves import curves_of_orders, picture_of_turn
 from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
 from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
-from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
+from strainwave.orders.two_encoders import WHY_AMPLITUDES_CHANGE, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
 
 
@@ -78,4 +78,4 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
 
 def _why(found: TransmissionError) -> str:
     """Return why amplitudes are not those of the gear alone; empty if they are."""
-    return f"amplitudes are those measured at {found.speeds}: {CHANGING}" if found.vibrates else ""
+    return f"amplitudes are those measured at {found.speeds}: {WHY_AMPLITUDES_CHANGE}" if found.vibrates else ""
