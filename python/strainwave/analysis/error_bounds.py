@@ -126,7 +126,13 @@ def _factor(gear_set: GearSet, part: str) -> tuple[float, str]:
     numbers = {path: each.value for path, each in all_numbers if path.startswith(begin) and each.value}
     names = {path.partition("[")[0] for path in numbers}
     sources = {path: entry for path, entry in gear_set.sources.items() if path.partition("[")[0] in names}
-    deviations = _relative_deviations(gear_set, numbers)
+    deviations = []
+    if gear_set.covariance is not None:
+        sigmas = np.sqrt(np.diag(np.asarray(gear_set.covariance.array))).tolist()
+        identified = zip(gear_set.covariance.paths, sigmas, strict=True)
+        deviations = [
+            sigma / abs(numbers[path]) for path, sigma in identified if path in numbers and not path.endswith("phase")
+        ]
     if deviations:
         spread = BOUND_SIGMA * max(deviations)
         return 1.0 + spread, f"{part.replace('_', ' ')} is identified: three standard deviations, {100.0 * spread:.2g} %"
@@ -134,11 +140,3 @@ def _factor(gear_set: GearSet, part: str) -> tuple[float, str]:
         return 1.0 / TYPICAL_SHARE, f"{part.replace('_', ' ')} is assumed: a typical gear has half of the maker's bound"
     spread = max((entry.spread for entry in sources.values() if entry.spread), default=ASSUMED_SPREAD)
     return 1.0 + spread, f"{part.replace('_', ' ')} of single gears differs by {100.0 * spread:.3g} %"
-
-
-def _relative_deviations(gear_set: GearSet, numbers: dict[str, float]) -> list[float]:
-    if gear_set.covariance is None:
-        return []
-    sigma = np.sqrt(np.diag(np.asarray(gear_set.covariance.array)))
-    known = zip(gear_set.covariance.paths, sigma.tolist(), strict=True)
-    return [deviation / abs(numbers[path]) for path, deviation in known if path in numbers and not path.endswith("phase")]

@@ -82,10 +82,10 @@ def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
 
 def state_within(plain: Drive, state: State) -> State:
     """Return the state of a drive as that of the same drive by `continuous`; what it lacks has its value at rest."""
-    known = {name.replace("control.law.", "control."): value for name, value in state.items()}
-    known |= {name.replace(".law.", "."): value for name, value in known.items() if name.startswith("sensors.")}
+    numbers = {name.replace("control.law.", "control."): value for name, value in state.items()}
+    numbers |= {name.replace(".law.", "."): value for name, value in numbers.items() if name.startswith("sensors.")}
     rest = plain.rest()
-    return rest.replace({name: known[name] for name in rest if name in known})
+    return rest.replace({name: numbers[name] for name in rest if name in numbers})
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,8 +156,7 @@ class Linearisation(ComparedByFields, Pictured):
     def damping_ratios(self) -> Array:
         """Return the damping ratio of each pole, shape (n,): 1 aperiodic, 0 undamped, below 0 unstable; NaN for a pole at 0."""
         size = self.eigenfrequencies
-        ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
-        return ratios
+        return np.asarray(np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0))
 
     def plot(self, frequency: ArrayLike | None = None, output: str = "output_angle", input: str = "command") -> Figure:
         """Return the Bode diagram of an output over an input: magnitude [unit of the output / of the input], phase [deg].
@@ -171,22 +170,18 @@ class Linearisation(ComparedByFields, Pictured):
         """
         from strainwave.analysis.plots import Response, bode_figure
 
-        frequencies = (
-            self._drawn_frequencies() if frequency is None else np.atleast_1d(arguments.numbers("frequency", frequency))
-        )
+        if frequency is None:
+            size = self.eigenfrequencies
+            size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau
+            if not size.size:
+                raise ValueError("frequency must be given: all poles are 0")
+            frequency = np.geomspace(0.1 * size.min(), 10.0 * size.max(), DRAWN_FREQUENCIES)
+        frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
         if frequencies.size == 0 or frequencies.min() <= 0.0:
             raise ValueError("frequency must have one positive number [Hz] or more; the axis is logarithmic")
         response = self.response(frequencies, output, input)
         title = f"Linear response of {output.replace('_', ' ')} to {input.replace('_', ' ')}"
         return bode_figure([Response("", frequencies, response)], ratio_of_units(self.units[output], self.units[input]), title)
-
-    def _drawn_frequencies(self) -> Array:
-        """Return the frequencies at which a response is drawn [Hz]."""
-        size = self.eigenfrequencies
-        size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau
-        if not size.size:
-            raise ValueError("frequency must be given: all poles are 0")
-        return np.geomspace(0.1 * size.min(), 10.0 * size.max(), DRAWN_FREQUENCIES)
 
     def response(self, frequency: ArrayLike, output: str = "output_angle", input: str = "command") -> Complex:
         """Amplitude and phase of an output over those of an input that is a sine.

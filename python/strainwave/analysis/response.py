@@ -174,27 +174,34 @@ def frequency_response(
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
     sines = _Sines(drive, initial.numbers, dt)
-    found = []
+    answers = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
         levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
         excitation = Excitation(levels["command"], levels["load_torque"], temperature)
-        found.append(sines.periodic(excitation, tolerance, max_periods))
-    known = {"load_torque": "N.m"} | units_of(drive, outputs_of(drive).values()) | {"command": command_unit(drive)}
-    return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found], input, known)
+        answers.append(sines.periodic(excitation, tolerance, max_periods))
+    all_units = {"load_torque": "N.m"} | units_of(drive, outputs_of(drive).values()) | {"command": command_unit(drive)}
+    return _response(
+        frequencies, amplitude, [period for period, _ in answers], [count for _, count in answers], input, all_units
+    )
 
 
 def _response(
-    frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int], input: str, known: dict[str, str]
+    frequencies: Array,
+    amplitude: float,
+    periods: list[dict[str, Array]],
+    counts: list[int],
+    input: str,
+    all_units: dict[str, str],
 ) -> FrequencyResponse:
     """Return the response from the outputs over one period of each frequency, and its number."""
     responses, distortions, drifts = {}, {}, {}
-    for name in found[0]:
-        first, higher = np.array([_harmonics(period[name]) for period in found]).T
+    for name in periods[0]:
+        first, higher = np.array([_harmonics(period[name]) for period in periods]).T
         responses[name] = first / amplitude
         distortions[name] = higher.real / np.maximum(np.abs(first), np.finfo(float).tiny)
-        drifts[name] = np.array([period[name][-1] - period[name][0] for period in found])
-    units = {name: known[name] for name in dict.fromkeys((input, *responses))}
+        drifts[name] = np.array([period[name][-1] - period[name][0] for period in periods])
+    units = {name: all_units[name] for name in dict.fromkeys((input, *responses))}
     return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts), input, units)
 
 

@@ -106,8 +106,7 @@ class Derivatives(ComparedByFields, Pictured):
             raise ValueError(f"no output {quoted(output)}; there are {listed(outputs)}")
         if path not in self.parameters:
             raise ValueError(f"no derivatives by {quoted(path)}; there are those by {listed(self.parameters)}")
-        derivative: Array = self.values[list(self.parameters).index(path), outputs.index(output)]
-        return derivative
+        return np.asarray(self.values[list(self.parameters).index(path), outputs.index(output)])
 
     def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
         return Derivatives, (self.run, dict(self.parameters), dict(self.numbers), self.values)

@@ -81,10 +81,10 @@ def equilibrium(
         except ValueError:
             if (numbers := _come_to_rest(drive, begin, inputs)) is None:
                 raise
-    found = State.of(drive, numbers)
-    _check_prescribed(balanced, found.numbers, inputs)
-    turns = round(found.input_angle / tau)
-    return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
+    balanced_state = State.of(drive, numbers)
+    _check_prescribed(balanced, balanced_state.numbers, inputs)
+    turns = round(balanced_state.input_angle / tau)
+    return balanced_state.replace(input_angle=balanced_state.input_angle - tau * turns, turns=balanced_state.turns + turns)
 
 
 def _check_uncounted(drive: Drive) -> None:
@@ -187,17 +187,17 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
     sliding = start
     while True:
         slow = _Slow(drive, sliding, inputs)
-        found = _balance(slow, slow.guess())
-        last = slow.moved(slow.guess() if found is None else found)
+        balance = _balance(slow, slow.guess())
+        last = slow.moved(slow.guess() if balance is None else balance)
         freed, place = _core.break_away(drive, last, inputs), slow.layout.places
-        if found is None:
+        if balance is None:
             freed = _pushed(drive, last, freed, inputs)
         directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
         if (freed[directions] == sliding[directions]).all():
             break
         sliding = sliding.copy()
         sliding[directions] = freed[directions]
-    if found is None:
+    if balance is None:
         return None
     stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST_CHANNEL].item()))
     rates = Rates.of(drive, stopped, inputs)
@@ -225,8 +225,8 @@ def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
                 now = run.end
         except (ValueError, FloatingPointError):
             return None
-        if (found := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
-            return found
+        if (resting := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
+            return resting
     return None
 
 
@@ -325,10 +325,10 @@ def _running(drive: Drive, start: Array, inputs: Array) -> Array:
             "motor, spring and friction together cannot hold the load at any angle near it"
         )
     steady = _Steady(drive, start, inputs)
-    found = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
-    if found is None:
+    balance = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
+    if balance is None:
         raise ValueError(_unsteady(drive, inputs, "the torques do not balance at any speed"))
-    state = steady.moved(found)
+    state = steady.moved(balance)
     elsewhere = state.copy()
     elsewhere[steady.layout.places["input_angle"]] += 1.0
     rates = Rates.of(drive, elsewhere, inputs)
@@ -453,11 +453,11 @@ def _followed(moves: Array, rates: Rates, places: list[int]) -> Array:
     """The same moves, in columns, with the numbers at `places` moved so that their rates stay as they are."""
     if not places:
         return moves
-    found, count = moves.copy(), len(rates.rate)
+    followed, count = moves.copy(), len(rates.rate)
     by_themselves, by_moves = rates.by_numbers[places][:, places], (rates.by_numbers[:count] @ moves)[places]
     for column, right in enumerate(by_moves.T):
-        found[places, column] = _least(by_themselves, -right)
-    return found
+        followed[places, column] = _least(by_themselves, -right)
+    return followed
 
 
 @np.errstate(over="ignore", invalid="ignore")

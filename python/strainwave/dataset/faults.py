@@ -153,11 +153,11 @@ def _facts(drive: Drive) -> Any:
     """Return what faults need to know of a drive."""
     kinematics = drive.gear.kinematics
     shaped = any(model.name == "misalignment" for _, model in _models(ERROR_PLACE, drive.gear.kinematic_error))
-    known: dict[str, Any] = {"ratio": kinematics.ratio, "error": "geometry" if shaped else "waves"}
+    facts: dict[str, Any] = {"ratio": kinematics.ratio, "error": "geometry" if shaped else "waves"}
     for name in ("flexspline_teeth", "circular_spline_teeth", "fixed"):
         if hasattr(kinematics, name):
-            known[name] = getattr(kinematics, name)
-    return _core.fault.Facts(**known)
+            facts[name] = getattr(kinematics, name)
+    return _core.fault.Facts(**facts)
 
 
 def _models(path: str, model: Any) -> Iterator[tuple[str, Any]]:

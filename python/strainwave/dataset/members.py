@@ -93,7 +93,10 @@ class Population:
             condition = self.condition(number)
             check_resolution(self.drive, table.dt, 0.0, condition.temperature)
             self._check_aliasing(condition)
-        self._check_samples()
+        available = {*outputs(self.drive), "tracking_error"}
+        kept = self.plan.samples.columns if self.plan.samples else ()
+        if wrong := [name for name in kept if name not in available]:
+            raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(available)}")
         assert self.paths  # of one fault of each table, which refuses names and numbers that it does not have
         for fault in self.plan.faults:
             if fault.onset is not None:
@@ -137,15 +140,15 @@ class Population:
     @cached_property
     def recorded(self) -> list[str]:
         """Outputs that features and samples need."""
-        known = outputs(self.drive)
-        wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in known)]
+        available = outputs(self.drive)
+        wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in available)]
         kept = self.plan.samples.columns if self.plan.samples else ()
         return list(dict.fromkeys(name for name in (*wanted, *kept) if name != "tracking_error"))
 
     @cached_property
     def features(self) -> FeatureSet:
-        known = {*outputs(self.drive), "tracking_error"}
-        signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in known}
+        available = {*outputs(self.drive), "tracking_error"}
+        signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in available}
         tooth = turning_spline_order(self.drive.gear.kinematics) if self.plan.features.tooth_orders else None
         return FeatureSet(signals, self.plan.features.orders, None if tooth is None else round(tooth, 6))
 
@@ -161,14 +164,15 @@ class Population:
         ranges = {path: spread.around(self.nominal[path]) for path, spread in stated.items()}
         if self.plan.units.catalogue_spread:
             entries = self.gear_set.sources.items()
-            known = {path: entry.spread for path, entry in entries if entry.spread and path in self.nominal}
-            if not known:
+            stated_by_set = {path: entry.spread for path, entry in entries if entry.spread and path in self.nominal}
+            if not stated_by_set:
                 raise ValueError(
                     f"units.catalogue_spread: the gear set {quoted(self.plan.drive)} states no spread of a number; "
                     "give units.spread instead"
                 )
             ends = {
-                path: sorted(self.nominal[path] * (1.0 + sign * share) for sign in (-1, 1)) for path, share in known.items()
+                path: sorted(self.nominal[path] * (1.0 + sign * share) for sign in (-1, 1))
+                for path, share in stated_by_set.items()
             }
             ranges = {path: Range(low=low, high=high) for path, (low, high) in ends.items()} | ranges
         limits = every(self.drive)
@@ -324,13 +328,6 @@ class Population:
                 f"condition {condition.number} ({condition.profile}): order {highest:g} reaches {frequency:.4g} Hz; samples "
                 f"{table.sample:g} s apart alias; take simulation.sample = {0.99 * needed:.3g} s or less, or lower orders"
             )
-
-    def _check_samples(self) -> None:
-        if self.plan.samples is None:
-            return
-        known = {*outputs(self.drive), "tracking_error"}
-        if wrong := [name for name in self.plan.samples.columns if name not in known]:
-            raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(known)}")
 
 
 def fault_kind(name: str) -> Any:

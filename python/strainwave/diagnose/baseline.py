@@ -199,14 +199,14 @@ def compared(
 
 def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRecording) -> tuple[list[Cell], list[str]]:
     """Return the cells of a recording under conditions that the baseline contains, and why others are left out."""
-    known = [cell for one in healthy for cell in one]
-    speeds, loads = (np.array([getattr(cell, name) for cell in known]) for name in ("speed", "load"))
+    healthy_cells = [cell for one in healthy for cell in one]
+    speeds, loads = (np.array([getattr(cell, name) for cell in healthy_cells]) for name in ("speed", "load"))
     load_room = MAX_LOAD_SHARE * max(float(np.ptp(loads)), float(np.abs(loads).max()))
     bounds = {
         "speed": (float(speeds.min()) / MAX_SPEED_RATIO, float(speeds.max()) * MAX_SPEED_RATIO),
         "load": (float(loads.min()) - load_room, float(loads.max()) + load_room),
     }
-    elsewhere, reason = _elsewhere(known, own, run)
+    elsewhere, reason = _elsewhere(healthy_cells, own, run)
     left, reasons = [], [reason] if reason else []
     for cell, is_elsewhere in zip(own, elsewhere, strict=True):
         if not is_elsewhere and all(low <= getattr(cell, name) <= high for name, (low, high) in bounds.items()):
@@ -221,7 +221,7 @@ def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRec
     return left, reasons
 
 
-def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) -> tuple[list[bool], str]:
+def _elsewhere(healthy_cells: Sequence[Cell], own: Sequence[Cell], run: JointRecording) -> tuple[list[bool], str]:
     """Return True for each cell of a recording at a place that the baseline does not cover, and the reason.
 
     A place is an angle of the output: lines that stand still beat with those that turn with the output. If the baseline covers
@@ -229,7 +229,7 @@ def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) 
     """
     ratio = 1.0 if run.side == "output" else run.ratio
     turns = float(STRAIN_WAVE_RATIOS[0]) if ratio is None else ratio  # of the shaft per revolution of the output, at least
-    covered = _joined([(cell.first / turns, cell.last / turns) for cell in known])
+    covered = _joined([(cell.first / turns, cell.last / turns) for cell in healthy_cells])
     if ratio is not None and any(last - first >= tau for first, last in covered):
         return [False] * len(own), ""
     wider = [(low - _margin(low, high), high + _margin(low, high)) for low, high in covered]

@@ -223,13 +223,20 @@ def diagnosed(
     if not runs:
         reasons = "; ".join(f"{name}: {why}" for name, why in refused.items())
         raise ValueError(reasons or "there is no recording to diagnose; give one or more")
-    _check_alike([*runs, *baseline])
+    first = runs[0]
+    for run in (*runs, *baseline):
+        for what, one, other in (("column", first.column, run.column), ("shaft", first.side, run.side)):
+            if one != other:
+                raise ValueError(
+                    f"{run.name}: {what} {other}, but {one} in {first.name}; recordings of one joint are compared in the same "
+                    f"column over the same shaft: name them with --column, or diagnose them apart"
+                )
     healthy = [joint_motion(run) for run in baseline]
-    known = [line for run in baseline for line in gear_lines(_blind(run))]
+    baseline_lines = [line for run in baseline for line in gear_lines(_blind(run))]
     done: list[RunDiagnosis] = []
     for run in runs:
         try:
-            done.append(_run(run, question, healthy, known))
+            done.append(_run(run, question, healthy, baseline_lines))
         except ValueError as error:
             refused[run.name] = without_name(str(error), run.name)
     if not done:
@@ -261,33 +268,25 @@ def _blind(run: JointRecording) -> Ripple:
     )
 
 
-def _check_alike(runs: Sequence[JointRecording]) -> None:
-    """Raise ValueError for recordings that cannot be compared."""
-    first = runs[0]
-    for run in runs[1:]:
-        for what, one, other in (("column", first.column, run.column), ("shaft", first.side, run.side)):
-            if one != other:
-                raise ValueError(
-                    f"{run.name}: {what} {other}, but {one} in {first.name}; recordings of one joint are compared in the same "
-                    f"column over the same shaft: name them with --column, or diagnose them apart"
-                )
-
-
-def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
-    found = _blind(run)
+def _run(
+    run: JointRecording, question: Question, healthy: Sequence[JointMotion], baseline_lines: Sequence[float]
+) -> RunDiagnosis:
+    blind = _blind(run)
     motion = joint_motion(run)
     named = question.named_orders(run)
-    orders, response = _against_noise(motion, named, found, question)
-    comparison, remarks = _compared(motion, found, question, healthy, known)
-    alarms = [_located(each.order, comparison, found, motion, known) for each in comparison.alarms] if comparison else []
+    orders, response = _against_noise(motion, named, blind, question)
+    comparison, remarks = _compared(motion, blind, question, healthy, baseline_lines)
+    alarms = (
+        [_located(each.order, comparison, blind, motion, baseline_lines) for each in comparison.alarms] if comparison else []
+    )
     name = name_of(*alarms[0], named) if alarms else ""
-    verdict, reason = _verdict(orders, comparison, found, name, bool(healthy), remarks, run.unit)
+    verdict, reason = _verdict(orders, comparison, blind, name, bool(healthy), remarks, run.unit)
     geometry = _geometry(run, question, remarks)
     return RunDiagnosis(
         run.name,
         run,
-        found,
-        _wave(motion, found),
+        blind,
+        _wave(motion, blind),
         orders,
         response,
         comparison,
@@ -298,7 +297,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         motion.span * run.per_input,
         motion.load,
         causes(alarms, run.per_input, question.kinematics, question.bearings),
-        tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
+        tuple(dict.fromkeys([*run.remarks, *blind.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
 
 
@@ -314,19 +313,19 @@ def _geometry(run: JointRecording, question: Question, remarks: list[str]) -> Ge
 
 
 def _compared(
-    motion: JointMotion, found: Ripple, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]
+    motion: JointMotion, blind: Ripple, question: Question, healthy: Sequence[JointMotion], baseline_lines: Sequence[float]
 ) -> tuple[BaselineComparison | None, list[str]]:
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
         return None, []
-    named = [each for each in question.named_orders(motion.run) if each.order <= found.highest]
+    named = [each for each in question.named_orders(motion.run) if each.order <= blind.highest]
     multiples = {each.order for each in named if each.is_multiple}
     resolution = 1.0 / max(each.span for each in healthy)
     # a line is where it was found, also next to a whole order
-    planned = apart([*known, *(each.order for each in named)], resolution)
-    own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
+    planned = apart([*baseline_lines, *(each.order for each in named)], resolution)
+    own = apart([*planned, *gear_lines(blind)], resolution)[len(planned) :]
     ranked = [*(each for each in planned if each not in multiples), *own, *(each for each in planned if each in multiples)]
-    searched = (found.highest - found.lowest) * max(found.revolutions, 1.0)
+    searched = (blind.highest - blind.lowest) * max(blind.revolutions, 1.0)
     try:
         baseline = baseline_of(healthy, ranked)
     except ValueError as error:
@@ -336,24 +335,24 @@ def _compared(
 
 
 def _located(
-    order: float, comparison: BaselineComparison, found: Ripple, motion: JointMotion, known: Sequence[float]
+    order: float, comparison: BaselineComparison, blind: Ripple, motion: JointMotion, baseline_lines: Sequence[float]
 ) -> tuple[float, float]:
     """Return where the line of an alarm is, and with what resolution.
 
     The blocks that were compared separate less than the recording. A line that is new and alone among what they do not
     separate is the one that changed: it is where the blind search found it in the whole recording.
     """
-    near = [line for line in gear_lines(found) if abs(line - order) < comparison.resolution]
-    if len(near) == 1 and all(abs(line - near[0]) >= comparison.resolution for line in known):
+    near = [line for line in gear_lines(blind) if abs(line - order) < comparison.resolution]
+    if len(near) == 1 and all(abs(line - near[0]) >= comparison.resolution for line in baseline_lines):
         return near[0], 1.0 / max(motion.span, 1e-300)
     return order, comparison.resolution
 
 
 def _against_noise(
-    motion: JointMotion, named: Sequence[NamedOrder], found: Ripple, question: Question
+    motion: JointMotion, named: Sequence[NamedOrder], blind: Ripple, question: Question
 ) -> tuple[tuple[OrderAgainstNoise, ...], str]:
     """Return the named orders that the samples follow and the record separates, and the source of their response to errors."""
-    followed = [each for each in named if each.order <= found.highest]
+    followed = [each for each in named if each.order <= blind.highest]
     kept = set(apart([each.order for each in followed], 1.0 / max(motion.span, 1e-12)))
     separate = [each for each in followed if each.order in kept]
     if not separate:
@@ -396,7 +395,7 @@ def _threshold(cell: Cell, false_alarm: float, tests: int) -> float:
 def _verdict(
     orders: Sequence[OrderAgainstNoise],
     comparison: BaselineComparison | None,
-    found: Ripple,
+    blind: Ripple,
     name: str,
     has_baseline: bool,
     remarks: Sequence[str],
@@ -430,25 +429,25 @@ def _verdict(
     if has_baseline:
         why = [*remarks, *(() if comparison is None else comparison.remarks)]
         return "not comparable", why[0] if why else "no block of the recording has conditions that the baseline contains"
-    count = sum(line.kind in ("order", "either") and not line.joint for line in found.lines)
+    count = sum(line.kind in ("order", "either") and not line.joint for line in blind.lines)
     if count or any(each.detected for each in orders):
         lines = max(count, sum(each.detected for each in orders))
         return "lines found", f"{lines} {'line repeats' if lines == 1 else 'lines repeat'} with the angle of this joint"
     return "no line found", "no line stands out of the noise, which is no proof of health"
 
 
-def _wave(motion: JointMotion, found: Ripple) -> WaveRipple | None:
+def _wave(motion: JointMotion, blind: Ripple) -> WaveRipple | None:
     """Return the ripple of the wave generator: of the lines of a blind search the one that is order 2 of the ratio."""
-    own = [line for line in found.lines if line.kind in ("order", "either") and not line.joint]
-    line = _wave_line(own, motion, found)
+    own = [line for line in blind.lines if line.kind in ("order", "either") and not line.joint]
+    line = _wave_line(own, motion, blind)
     if line is None:
         return None
     others = [each.order for each in own if each is not line][:MAX_OTHER_LINES]
     orders = apart([line.order, *others], 1.0 / motion.span)
-    return WaveRipple(line.order, line.order_sigma, found.concluded, line.false_alarm, _by_load(motion, orders))
+    return WaveRipple(line.order, line.order_sigma, blind.concluded, line.false_alarm, _by_load(motion, orders))
 
 
-def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, found: Ripple) -> SpectrumLine | None:
+def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, blind: Ripple) -> SpectrumLine | None:
     reach = WAVE_RESOLUTIONS / motion.span
     per_input = motion.run.per_input
     if motion.run.side == "input":
@@ -456,7 +455,7 @@ def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, found: Ripple) 
     elif np.isfinite(per_input):
         wanted = [WAVE_ORDER * (per_input + shift) for shift in (0.0, 1.0, -1.0)]
     else:  # motors have combs of whole orders, too: a line that may be one of time is not taken for the wave generator's
-        wanted = [WAVE_ORDER * (ratio + shift) for ratio in found.concluded for shift in (0.0, 1.0, -1.0)]
+        wanted = [WAVE_ORDER * (ratio + shift) for ratio in blind.concluded for shift in (0.0, 1.0, -1.0)]
         own = [line for line in own if line.kind == "order"]
     near = [line for line in own if any(abs(line.order - order) <= max(reach, 3.0 * line.order_sigma) for order in wanted)]
     return max(near, key=lambda line: line.evidence, default=None)

@@ -277,9 +277,9 @@ def inverted(error: MeasuredOrders, law: Any, *, with_offset: bool = False) -> t
     unit = max(float(np.hypot(*first)), 0.1 * M_PER_MICRON)
     point, misfit = np.append(first, 0.0), np.inf
     for larger, share in INITIAL_SHARES:
-        found, left = _least_squares(error, law, larger * np.append(first, share * unit), unit)
+        tried, left = _least_squares(error, law, larger * np.append(first, share * unit), unit)
         if left < misfit:
-            point, misfit = found, left
+            point, misfit = tried, left
         if misfit < GOOD_MISFIT:
             break
     return point, misfit

@@ -133,8 +133,8 @@ def parts_over_load(lines: ArrayLike, torque: ArrayLike, sigma: ArrayLike) -> Pa
     if len(np.unique(loads)) < LOADS_PER_FIT:
         raise ValueError("the records have one load; two different torques determine the part that is proportional to the load")
     design = np.column_stack([np.ones_like(loads), loads]) / noise[:, None]
-    found, deviations = solved(design, values / noise), np.sqrt(np.diag(normal_inverse(design)))
-    return PartsOverLoad(complex(found[0]), complex(found[1]), (float(deviations[0]), float(deviations[1])))
+    line, deviations = solved(design, values / noise), np.sqrt(np.diag(normal_inverse(design)))
+    return PartsOverLoad(complex(line[0]), complex(line[1]), (float(deviations[0]), float(deviations[1])))
 
 
 def current_per_error(ramp: ActuatorRamp) -> CurrentPerError:
@@ -260,8 +260,8 @@ def trend(recording: Recording) -> tuple[Array, Array]:
     angle, current = recording.values("input_angle", "rad"), recording.values("current", "A")
     terms = np.polynomial.legendre.legvander(2.0 * (angle - angle.min()) / np.ptp(angle) - 1.0, TREND_DEGREES)
     design = np.column_stack([terms, order_waves(angle, ERROR_ORDERS)])
-    found = solved(design, current)
-    white = float(np.std(np.diff(current - design @ found)) / np.sqrt(2.0))
+    coefficients = solved(design, current)
+    white = float(np.std(np.diff(current - design @ coefficients)) / np.sqrt(2.0))
     covariance = normal_inverse(design)
     kept = TREND_DEGREES + 1
-    return found[:kept], white * np.sqrt(np.diag(covariance)[:kept])
+    return coefficients[:kept], white * np.sqrt(np.diag(covariance)[:kept])

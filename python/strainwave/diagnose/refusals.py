@@ -111,8 +111,8 @@ def usable(
             f"{listed(each for each, _ in (*ANGLE_COLUMNS, *SPEED_COLUMNS))}; record it"
         )
     try:
-        turning, angle, known, remarks = with_angle(recording, side, rate)
-        run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
+        turning, angle, side_of_angle, remarks = with_angle(recording, side, rate)
+        run = JointRecording(name, turning, effort, angle, side_of_angle, size, dict(other_angles or {}), rate, remarks)
         run = _with_shaft_of_input(run) if "input_angle" in recording and "output_angle" in recording else run
         _check_motion(run)
     except QuestionError as question:

@@ -331,11 +331,11 @@ def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderReg
     white: Callable[[Array], Array] = _whitening(motion.series, everything) if len(grows) > 1 else np.asarray
     inverse, factor, basis = _solved(white(everything))
     mean_inverse, mean_factor, _ = _solved(white(np.concatenate([*single, smooth], axis=1)))
-    width, found = 2 * len(grows), []
+    width, fits = 2 * len(grows), []
     for k, order in enumerate(orders):
         own, two = slice(k * width, (k + 1) * width), slice(2 * k, 2 * k + 2)
         scores = _scores(motion, order, orders, basis, grows, white)
-        found.append(
+        fits.append(
             OrderRegression(
                 order=order,
                 names=tuple(grows),
@@ -348,7 +348,7 @@ def regressions(motion: SampledMotion, orders: Sequence[float]) -> list[OrderReg
                 scores=np.stack([white(each).T for each in scores]) if scores else np.zeros((0, 2, len(motion.angle))),
             )
         )
-    return found
+    return fits
 
 
 def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> list[float]:
@@ -358,13 +358,13 @@ def neighbours_of(order: float, orders: Sequence[float], revolutions: float) -> 
     [1.7, 2.3, 1.6, 2.4]
     """
     reach = max(MIN_NEIGHBOURS, min(MAX_NEIGHBOUR_LINES, int(NEIGHBOUR_REACH * order * revolutions)))
-    found = []
+    neighbours = []
     for k in range(GUARD_LINES + 1, GUARD_LINES + reach + 1):
         for place in (order - k / revolutions, order + k / revolutions):
             near = min((abs(place - other) for other in orders if other != order), default=inf)
             if place > 0.25 * order and near * revolutions > 0.75:
-                found.append(round(place, 12))
-    return found
+                neighbours.append(round(place, 12))
+    return neighbours
 
 
 def _whitening(series: Array, columns: Array) -> Callable[[Array], Array]:
@@ -403,25 +403,25 @@ def _scores(
     """Return orthonormal columns of the parts of each neighbour, one neighbour after the other, each of shape (n, 2 parts)."""
     if len(grows) == 1:
         return []
-    found: list[Array] = []
+    blocks: list[Array] = []
     room = max(2 * len(grows) + 2, MAX_SCORES // (2 * len(grows) * len(motion.angle)))
     for place in neighbours_of(order, orders, motion.revolutions)[:room]:
         block = white(np.stack([wave * each for each in grows.values() for wave in motion.wave(place)], axis=1))
         size = np.linalg.norm(block, axis=0)
         block = block / size
         block = block - basis @ (basis.T @ block)
-        for other in found:
+        for other in blocks:
             block = block - other @ (other.T @ block)
         squared = block.T @ block
         values, vectors = np.linalg.eigh(squared)
         if values[0] > MIN_INDEPENDENCE:
-            found.append(block @ ((vectors / np.sqrt(values)) @ vectors.T))
-    if len(found) < 2 * len(grows):
+            blocks.append(block @ ((vectors / np.sqrt(values)) @ vectors.T))
+    if len(blocks) < 2 * len(grows):
         raise ValueError(
-            f"order {order:g} has {len(grows)} parts and {len(found)} neighbours with noise alone: record longer, or leave out "
-            "the load column"
+            f"order {order:g} has {len(grows)} parts and {len(blocks)} neighbours with noise alone: record longer, or leave "
+            "out the load column"
         )
-    return found
+    return blocks
 
 
 def _solved(columns: Array) -> tuple[Array, Array, Array]:

@@ -134,8 +134,7 @@ def blocks_of(motion: JointMotion, travel: float) -> NDArray[np.int_]:
     """
     path = np.cumsum(np.abs(motion.shaft.own.speed) * (motion.shaft.weight > 0.5))
     count = max(int(path[-1] / travel + 1e-9), 1)
-    block: NDArray[np.int_] = np.minimum((path / max(path[-1] / count, 1e-300)).astype(int), count - 1)
-    return block
+    return np.asarray(np.minimum((path / max(path[-1] / count, 1e-300)).astype(int), count - 1))
 
 
 def cells_of(

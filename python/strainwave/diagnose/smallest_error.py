@@ -115,7 +115,13 @@ class SteadyRun:
             record=["input_angle", "output_angle", CURRENT_COLUMN],
         )
         record = run.between(self.run_in, length)
-        self._check_speed(record)
+        angle, wanted = record["input_angle"], self.speed * self.duration
+        turned = float(angle[-1] - angle[0]) * float(np.sign(ratio))
+        if not MIN_SPEED_SHARE * wanted <= turned <= wanted / MIN_SPEED_SHARE:
+            raise ValueError(
+                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s, loaded with {self.load_torque:g} N.m; "
+                f"speed = {self.speed:g} rad/s makes {wanted:.4g} rad. Take a lower speed or load, or a drive with a controller"
+            )
         return record
 
     def gain(self, healthy: RecordedOrder, amplitude: float) -> complex:
@@ -124,17 +130,6 @@ class SteadyRun:
         Hysteresis and friction answer a small error otherwise than a large one.
         """
         return (RecordedOrder.of(self.with_error(amplitude), self.order).wave - healthy.wave) / amplitude
-
-    def _check_speed(self, record: Recording) -> None:
-        """Raise ValueError if the input does not turn as far as the speed makes it, or against it."""
-        angle = record["input_angle"]
-        turned = float(angle[-1] - angle[0]) * float(np.sign(float(self.drive.gear.kinematics.ratio)))
-        wanted = self.speed * self.duration
-        if not MIN_SPEED_SHARE * wanted <= turned <= wanted / MIN_SPEED_SHARE:
-            raise ValueError(
-                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s, loaded with {self.load_torque:g} N.m; "
-                f"speed = {self.speed:g} rad/s makes {wanted:.4g} rad. Take a lower speed or load, or a drive with a controller"
-            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,7 +305,7 @@ def detection_limit(
             break
         before, gain = probe, run.gain(healthy, probe)
         limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
-    found = DetectionLimit(
+    detected = DetectionLimit(
         order=order,
         amplitude=limit,
         current=sigma * needed,
@@ -325,21 +320,21 @@ def detection_limit(
         accuracy=accuracy,
         offset=abs(healthy.wave),
     )
-    return replace(found, remarks=_remarks(found, noise, healthy.own_noise))
+    return replace(detected, remarks=_remarks(detected, noise, healthy.own_noise))
 
 
-def _remarks(found: DetectionLimit, noise: float, own: float) -> tuple[str, ...]:
+def _remarks(limit: DetectionLimit, noise: float, own: float) -> tuple[str, ...]:
     remarks = []
-    if found.insensitive:
+    if limit.insensitive:
         remarks.append(
-            f"insensitive: an error of {found.accuracy / RAD_PER_ARCMIN:.3g} arcmin, which this gear may have, makes "
-            f"{1e3 * abs(found.gain) * found.accuracy:.3g} mA, and {1e3 * found.current:.3g} mA are needed. No alarm means "
+            f"insensitive: an error of {limit.accuracy / RAD_PER_ARCMIN:.3g} arcmin, which this gear may have, makes "
+            f"{1e3 * abs(limit.gain) * limit.accuracy:.3g} mA, and {1e3 * limit.current:.3g} mA are needed. No alarm means "
             "nothing: take more load, a longer record, or a sensor with less noise"
         )
     if own > noise:
         remarks.append(
             f"without any error the drive has {1e3 * own:.3g} mA around the order, more than the noise of {1e3 * noise:.3g} mA"
         )
-    if found.offset > found.current:
-        remarks.append(f"order {found.order:g} has {1e3 * found.offset:.3g} mA without any error; compare it with healthy runs")
+    if limit.offset > limit.current:
+        remarks.append(f"order {limit.order:g} has {1e3 * limit.offset:.3g} mA without any error; compare it with healthy runs")
     return tuple(remarks)

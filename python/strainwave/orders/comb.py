@@ -87,7 +87,7 @@ def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float)
     return tuple(RatioCandidate(ratio, exp(scores[ratio][0] - best) / total, scores[ratio][1]) for ratio in ranked)
 
 
-def conclusive(found: Sequence[RatioCandidate]) -> tuple[int, ...]:
+def conclusive(ranked: Sequence[RatioCandidate]) -> tuple[int, ...]:
     """Return the ratio that the candidates determine, or two neighbours: one gear with either spline fixed; else none.
 
     >>> conclusive([RatioCandidate(101, 0.6, ()), RatioCandidate(100, 0.3, ()), RatioCandidate(50, 0.05, ())])
@@ -95,10 +95,10 @@ def conclusive(found: Sequence[RatioCandidate]) -> tuple[int, ...]:
     >>> conclusive([RatioCandidate(44, 0.5, ()), RatioCandidate(22, 0.3, ())])
     ()
     """
-    if not found:
+    if not ranked:
         return ()
-    best = found[0]
-    pair = [best, *(each for each in found[1:] if abs(each.ratio - best.ratio) == 1)][:2]
+    best = ranked[0]
+    pair = [best, *(each for each in ranked[1:] if abs(each.ratio - best.ratio) == 1)][:2]
     if len(pair) == 2 and pair[1].share < MIN_NEIGHBOUR_SHARE * best.share:
         pair.pop()
     if sum(each.share for each in pair) < MIN_CONCLUSIVE_SHARE:

@@ -76,8 +76,7 @@ class Spectrum:
         from scipy.special import betainc
 
         single = betainc(self.floors, self.parts, self.floors / (self.floors + np.asarray(evidence)))
-        bounded: Array = np.minimum(1.0, tested * single)
-        return bounded
+        return np.asarray(np.minimum(1.0, tested * single))
 
     def evidence_of(self, false_alarm: float, tested: float) -> float:
         """Return the evidence that noise alone gives anywhere in so many lines with this probability."""

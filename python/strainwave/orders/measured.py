@@ -97,8 +97,10 @@ def orders_found(
             f"orders need two angles, input_angle and output_angle, or one angle and a torque or current; there are "
             f"{listed(recording.names)}"
         )
-    turning, angle, known, remarks = with_angle(recording, side, rate)
-    lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
+    turning, angle, side_of_angle, remarks = with_angle(recording, side, rate)
+    lines = ripple(
+        turning, effort, angle=angle, side=side_of_angle, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles
+    )
     passing, curves = None, lines.curves
     if effort == "vibration" and "speed" in curves and is_run_up(curves["speed"]):
         passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
@@ -108,10 +110,10 @@ def orders_found(
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
     """Return the recording with an angle, its name and side, and what was done for it."""
-    for name, known in ANGLE_COLUMNS:
+    for name, side_of_name in ANGLE_COLUMNS:
         if name in recording:
-            return recording, name, _side(name, known, side), ()
-    for name, known in SPEED_COLUMNS:
+            return recording, name, _side(name, side_of_name, side), ()
+    for name, side_of_name in SPEED_COLUMNS:
         if name not in recording:
             continue
         if "time" not in recording and rate is None:
@@ -122,7 +124,7 @@ def with_angle(recording: Recording, side: Side | None, rate: float | None) -> t
         step = np.diff(recording.time) if "time" in recording else np.full(len(speed) - 1, 1.0 / float(rate or 1.0))
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
         remark = f"there is no angle: {name} is summed up over time; its errors widen the lines"
-        return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (remark,)
+        return recording.with_column("angle", angle, "rad"), "angle", _side(name, side_of_name, side), (remark,)
     raise ValueError(f"orders need an angle, or a speed over time: record one; there are {listed(recording.names)}")
 
 

@@ -199,5 +199,5 @@ def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, f
     amplitudes, _ = amplitudes_of(solved(columns, deviation)[1:])
     sigma = float(np.sqrt(left @ left / (len(angle) - columns.shape[1]) * 2.0 / len(angle)))
     lines = zip(orders, amplitudes.tolist(), strict=True)
-    found = tuple(sorted((float(order), size, sigma) for order, size in lines))
-    return found, [] if found else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]
+    strong = tuple(sorted((float(order), size, sigma) for order, size in lines))
+    return strong, [] if strong else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]

@@ -210,11 +210,11 @@ class _Problem:
         scale = [START_DAMPING * start[0], START_DAMPING]
         step = max(len(self.series) // SAMPLES_OF_SEARCH, 1)
         coarse = least_squares(left, start, x_scale=scale, bounds=bounds, args=(step,))
-        found = least_squares(left, coarse.x, x_scale=scale, bounds=bounds, args=(1,))
-        correlated, jacobian = max(correlation_length(found.fun), 1.0), np.asarray(found.jac, float)
-        noise = float(np.std(found.fun))
+        best = least_squares(left, coarse.x, x_scale=scale, bounds=bounds, args=(1,))
+        correlated, jacobian = max(correlation_length(best.fun), 1.0), np.asarray(best.jac, float)
+        noise = float(np.std(best.fun))
         sigmas = noise * np.sqrt(correlated * np.diag(np.linalg.pinv(jacobian.T @ jacobian)))
-        return self.fitted_amplitudes(found.x, sigmas, steady, correlated)
+        return self.fitted_amplitudes(best.x, sigmas, steady, correlated)
 
     def fitted_amplitudes(self, values: Array, sigmas: Array, steady: bool, correlated: float) -> _Fit:
         """Return the fit at values of frequency and damping; at none, without a resonance."""

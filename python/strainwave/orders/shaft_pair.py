@@ -141,12 +141,12 @@ def _slow_ratio(pair: Pair, near: float) -> tuple[float, float]:
     compared = pair.output - pair.output.mean()
     noise = compared - columns @ solved(columns, compared)
     weight = INDEPENDENT_SAMPLES / len(compared) / max(float(np.mean(noise**2)), MIN_ENCODER_NOISE**2)
-    known = np.diag([0.0, *[1.0 / WINDUP_SIGMA] * int(kept.sum())])
-    covariance = normal_inverse(np.concatenate([np.sqrt(weight) * columns, known]))
-    found = covariance @ (weight * columns.T @ compared)
-    unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ found[1:])) / float(np.std(turned))
+    prior = np.diag([0.0, *[1.0 / WINDUP_SIGMA] * int(kept.sum())])
+    covariance = normal_inverse(np.concatenate([np.sqrt(weight) * columns, prior]))
+    coefficients = covariance @ (weight * columns.T @ compared)
+    unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ coefficients[1:])) / float(np.std(turned))
     sigma = hypot(float(np.sqrt(covariance[0, 0])), unsure)
-    share = float(found[0])
+    share = float(coefficients[0])
     return near / share, abs(near) * sigma / share**2
 
 

@@ -246,20 +246,20 @@ class _Lines:
         series, compared = self.design(stage)
         return compared - series @ values
 
-    def result(self, found: _Fitted) -> Regressed:
-        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
-        series, _ = self.design(found.stage)
+    def result(self, fitted: _Fitted) -> Regressed:
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / fitted.floor), 0.0)
+        series, _ = self.design(fitted.stage)
         columns = [_stacked(series * weight[:, None])]
-        if found.stage is not None:
-            columns.append(np.stack([self._slope(found, k, weight) for k in (0, 1)], axis=1))
+        if fitted.stage is not None:
+            columns.append(np.stack([self._slope(fitted, k, weight) for k in (0, 1)], axis=1))
         jacobian = np.concatenate(columns, axis=1)
         inverse = normal_inverse(jacobian)
-        left = self.left(found.stage, found.values)
+        left = self.left(fitted.stage, fitted.values)
         scores = self._scores(jacobian, _stacked(left * weight))
         freedom = max(len(scores) - jacobian.shape[1], 1)
         covariance = inverse @ (scores.T @ scores) @ inverse * len(scores) / freedom
         spread = (float("nan"), float("nan"))
-        if found.stage is not None:
+        if fitted.stage is not None:
             spread = (float(np.sqrt(covariance[-2, -2])), float(np.sqrt(covariance[-1, -1])))
             # a gear is no linear spring: stiffness and damping differ for ripple and motion. They are not estimated but
             # considered, each with its spread (Schmidt's consider covariance: Jazwinski1970)
@@ -269,22 +269,22 @@ class _Lines:
         whole = np.zeros(self.count // 2 + 1, complex)
         whole[1 : len(left) + 1] = left * np.sqrt(self.count)
         residual = np.fft.irfft(whole, self.count)
-        return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
+        return Regressed(fitted.values[:kept], covariance[:kept, :kept], freedom, fitted.stage, spread, residual)
 
-    def own_share_of_frequency(self, found: _Fitted) -> float:
+    def own_share_of_frequency(self, fitted: _Fitted) -> float:
         """Return the share of what the natural frequency changes [1] that no other amplitudes of orders and loads make up.
 
         It is zero at one speed, one way: there another amplitude and phase of each order predict the same.
         """
-        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
-        linear = _stacked(self.design(found.stage)[0] * weight[:, None])
-        return float(own_share(self._slope(found, 0, weight)[:, None], linear)[0])
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / fitted.floor), 0.0)
+        linear = _stacked(self.design(fitted.stage)[0] * weight[:, None])
+        return float(own_share(self._slope(fitted, 0, weight)[:, None], linear)[0])
 
-    def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
+    def _slope(self, fitted: _Fitted, which: int, weight: Array) -> Array:
         """Return the slope of the model over the logarithm of the stage's frequency or damping."""
-        assert found.stage is not None
-        at, step = found.stage.logarithms, np.eye(2)[which] * 1e-4
-        below, above = (self.left(_stage(at + sign * step), found.values) for sign in (-1.0, 1.0))
+        assert fitted.stage is not None
+        at, step = fitted.stage.logarithms, np.eye(2)[which] * 1e-4
+        below, above = (self.left(_stage(at + sign * step), fitted.values) for sign in (-1.0, 1.0))
         return _stacked((below - above) / 2e-4 * weight)
 
     def _scores(self, jacobian: Array, left: Array) -> Array:

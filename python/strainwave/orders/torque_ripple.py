@@ -276,18 +276,20 @@ def _check_sampled(shaft: Moving, record: Evenly, side: Side, size: float | None
         )
 
 
-def _line(line: SpectrumLine, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None) -> SpectrumLine:
+def _line(
+    line: SpectrumLine, shaft: Moving, search: LineSearch, record: Evenly, side: Side, size: float | None
+) -> SpectrumLine:
     """Return a line with its frequency in Hz, its order of the input, and its parts."""
     by_ratio = np.nan if size is None or line.joint else line.order / size
     return replace(
         line,
         per_input=line.order if side == "input" else by_ratio,
         frequency=line.frequency / record.step if record.timed else np.nan,
-        parts=_parts(line, shaft, found) if line.kind == "order" else (),
+        parts=_parts(line, shaft, search) if line.kind == "order" else (),
     )
 
 
-def _parts(line: SpectrumLine, shaft: Moving, found: LineSearch) -> tuple[LinePart, ...]:
+def _parts(line: SpectrumLine, shaft: Moving, search: LineSearch) -> tuple[LinePart, ...]:
     """Regress a line on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
     weight = shaft.weight
     share = weight / max(float(np.sqrt(np.mean(weight**2))), 1e-300)
@@ -307,29 +309,29 @@ def _parts(line: SpectrumLine, shaft: Moving, found: LineSearch) -> tuple[LinePa
     columns = np.stack([wave * each / sizes[name] for name, each in growing.items() for wave in (cosine, sine)], axis=1)
     shape = np.stack(waves(shaft, line), axis=1)
     values = [part for part in (line.wave_forward, line.wave_backward) if not np.isnan(part)]
-    series = found.residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
-    coefficients, covariance = weighed_fit(columns, series, found.floor)
+    series = search.residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
+    coefficients, covariance = weighed_fit(columns, series, search.floor)
     parts = []
     for k, name in enumerate(growing):
         pair, within = coefficients[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2]
         evidence = float(pair @ np.asarray(np.linalg.pinv(within)) @ pair)
-        alarm = min(1.0, len(found.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
+        alarm = min(1.0, len(search.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
         parts.append(LinePart(name, float(np.hypot(*pair)), float(np.sqrt(0.5 * np.trace(within))), alarm))
     return tuple(parts)
 
 
-def _spectrum(found: LineSearch, unit: str, allowed: float) -> Recording:
+def _spectrum(search: LineSearch, unit: str, allowed: float) -> Recording:
     """Return amplitude over order, its floor, and the amplitude at which a line is found."""
-    spectrum = found.orders
-    needed = spectrum.evidence_of(allowed, found.tested)
+    spectrum = search.orders
+    needed = spectrum.evidence_of(allowed, search.tested)
     columns = {"order": spectrum.place, "amplitude": spectrum.amplitude}
     columns |= {"floor": spectrum.noise * np.sqrt(np.pi / 2.0), "threshold": spectrum.noise * np.sqrt(2.0 * needed)}
     return Recording(columns, dict.fromkeys(columns, unit) | {"order": "1"}, "spectrum over the angle")
 
 
-def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Recording:
+def _curves(shaft: Moving, search: LineSearch, record: Evenly, unit: str) -> Recording:
     columns = {"time": record.start + record.step * np.arange(len(record)), "angle": shaft.own.angle}
-    columns |= {"series": shaft.series + shaft.smooth, "smooth": shaft.smooth, "residual": found.residual}
+    columns |= {"series": shaft.series + shaft.smooth, "smooth": shaft.smooth, "residual": search.residual}
     columns["speed"] = shaft.own.speed / record.step
     units = {"time": "s", "angle": "rad", "series": unit, "smooth": unit, "residual": unit, "speed": "rad/s"}
     if not record.timed:
@@ -338,37 +340,37 @@ def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Reco
     return Recording(columns, units, "ripple")
 
 
-def _remarks(shaft: Moving, found: LineSearch, record: Evenly, top: float) -> list[str]:
+def _remarks(shaft: Moving, search: LineSearch, record: Evenly, top: float) -> list[str]:
     remarks = []
     if shaft.outliers:
         far = "sample lies" if shaft.outliers == 1 else "samples lie"
         remarks.append(f"{shaft.outliers} {far} far outside of the others; outliers do not count")
-    if any("time" in line.rivals for line in found.lines):
+    if any("time" in line.rivals for line in search.lines):
         remarks.append(
             "the speed is too constant to separate order lines from time lines (mains, resonances); a second run at another "
             "speed settles it"
         )
-    if joints := sorted({rival for line in found.lines for rival in line.rivals if rival != "time"}):
+    if joints := sorted({rival for line in search.lines for rival in line.rivals if rival != "time"}):
         remarks.append(
             f"{_joints(joints)} moved in proportion to this one, so lines may be of either; record this joint while others rest"
         )
-    if joints := sorted({line.joint for line in found.lines if line.kind == "joint"}):
+    if joints := sorted({line.joint for line in search.lines if line.kind == "joint"}):
         remarks.append(f"lines that repeat with the angle of {_joints(joints)} are not of this gear")
-    if found.merged:
+    if search.merged:
         remarks.append(
-            f"{found.merged} weaker lines lie within {MERGE_PERIODS:g} times the resolution of stronger ones and are not "
+            f"{search.merged} weaker lines lie within {MERGE_PERIODS:g} times the resolution of stronger ones and are not "
             "listed: the stronger ones vary with speed or load"
         )
     if not record.timed:
         remarks.append("without time no frequency is known, and samples are taken to be at equal distances in time")
-    beyond = [line for line in found.lines if line.kind == "time" and line.order > top]
+    beyond = [line for line in search.lines if line.kind == "time" and line.order > top]
     if beyond and top < _sampled(shaft):
         limit = min(1.1 * max(line.order for line in beyond), MAX_ORDER)
         remarks.append(
             f"{len(beyond)} time lines pass at orders {listed(f'{line.order:.0f}' for line in beyond)}, beyond the highest "
             f"order looked for, {top:.4g}: they may be orders of the motor; --highest {limit:.0f} looks for these"
         )
-    if not found.lines:
+    if not search.lines:
         remarks.append("no line stands out of the noise; a longer record, slower motion or more load would lower the threshold")
     return remarks
 
@@ -378,11 +380,11 @@ def _joints(names: Sequence[str]) -> str:
 
 
 def _ratio_remarks(
-    found: LineSearch, likely: Sequence[RatioCandidate], revolutions: float, top: float, shaft: Moving
+    search: LineSearch, likely: Sequence[RatioCandidate], revolutions: float, top: float, shaft: Moving
 ) -> list[str]:
     """Return remarks on the ratio: why none is concluded, or which other one is possible."""
     remarks = []
-    slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
+    slow = [line for line in search.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
     if slow:
         limit = f"{lowest_usable(1.0 / revolutions):.3g}"
         hint = "" if len(shaft.shafts) > 1 else "; name the angles of other joints that move, with --column other_angles=…"
@@ -407,7 +409,7 @@ def _ratio_remarks(
             f"no ratio is concluded: the lines fit {ratios}; give --ratio, or turn further: orders are determined to "
             f"{1.0 / revolutions:.2g} per revolution"
         )
-    elif found.lines and not usable_lines(found.lines, 1.0 / revolutions):
+    elif search.lines and not usable_lines(search.lines, 1.0 / revolutions):
         remarks.append(
             "no ratio is concluded: no line is surely one of this joint; record this joint alone, at speeds that vary, and "
             "over more of a revolution"

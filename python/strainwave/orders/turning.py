@@ -191,8 +191,7 @@ def direction(speed: Array) -> Array:
     if not len(moving):
         return np.zeros_like(speed)
     last = np.maximum.accumulate(np.where(sense != 0.0, np.arange(len(sense)), moving[0]))
-    held: Array = sense[last]
-    return held
+    return np.asarray(sense[last])
 
 
 def reach_of(count: int) -> int:

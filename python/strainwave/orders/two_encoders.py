@@ -231,7 +231,11 @@ def transmission_error(
     error = sum((value * wave for value, wave in zip(fit.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
     lost = MeasuredValue(2.0 * float(fit.values[place]), 2.0 * float(np.sqrt(fit.covariance[place, place])), "rad")
-    frequency, damping = _stage_numbers(fit, pair.record, every)
+    frequency = damping = None
+    if fit.stage is not None and pair.record.timed:
+        hertz = fit.stage.frequency / (tau * pair.record.step * every)
+        frequency = MeasuredValue(hertz, hertz * fit.spread[0], "Hz")
+        damping = MeasuredValue(fit.stage.damping, fit.stage.damping * fit.spread[1], "1")
     speeds, vibrates = _speeds_of_amplitudes(fit, pair) if chosen else "", fit.vibrates and not _at_one_speed(pair)
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
     remarks += _stage_remarks(fit, pair, every, chosen, speeds)
@@ -270,7 +274,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     turns_in, turns_out = float(np.ptp(pair.input)) / tau, float(np.ptp(pair.output)) / tau
     highest = MAX_FREQUENCY * tau / pair.fastest if pair.fastest > 0.0 else inf
     lowest = MIN_ORDER_PERIODS / turns_in if turns_in >= MIN_INPUT_TURNS else inf
-    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
+    chosen: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
         remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
@@ -279,22 +283,22 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
-    if found and turns_out < MIN_ORDER_PERIODS:
+    if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():
             mesh = order * (1.0 - 1.0 / ratio.used)
-            if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
-                found.append((mesh, "mesh"))
-        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
-    elif found and ratio.of_strain_wave:
+            if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in chosen):
+                chosen.append((mesh, "mesh"))
+        chosen += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
+    elif chosen and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
             f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
             "spline, are separated after a whole one"
         )
-    return found, remarks
+    return chosen, remarks
 
 
 def _with_one_weight(
@@ -342,18 +346,18 @@ def _averaged(record: Evenly, recording: Recording) -> int:
     return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
 
 
-def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
+def _orders(chosen: Sequence[tuple[float, Shaft]], fit: Regressed, allowed: float) -> Iterator[ErrorOrder]:
     """Yield each order with its standard deviations and its significance."""
     for place, (order, shaft) in enumerate(chosen):
         own = slice(2 * place, 2 * place + 2)
-        pair, covariance = found.values[own], found.covariance[own, own]
+        pair, covariance = fit.values[own], fit.covariance[own, own]
         sine, cosine = pair.tolist()
         amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
         along = np.array([np.cos(phase), np.sin(phase)])
         across = np.array([-along[1], along[0]])
         sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
         square = float(pair @ np.asarray(np.linalg.pinv(covariance)) @ pair)
-        single = (1.0 + square / found.freedom) ** (-0.5 * found.freedom)  # tail of F(2, freedom)
+        single = (1.0 + square / fit.freedom) ** (-0.5 * fit.freedom)  # tail of F(2, freedom)
         alarm = min(1.0, len(chosen) * single)
         turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
         yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
@@ -371,35 +375,25 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     return MeasuredValue(float(fit.values[0]), float(np.sqrt(fit.covariance[0, 0])), per_load)
 
 
-def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[MeasuredValue | None, MeasuredValue | None]:
-    if found.stage is None or not record.timed:
-        return None, None
-    hertz = found.stage.frequency / (tau * record.step * every)
-    return (
-        MeasuredValue(hertz, hertz * found.spread[0], "Hz"),
-        MeasuredValue(found.stage.damping, found.stage.damping * found.spread[1], "1"),
-    )
-
-
 def _at_one_speed(pair: Pair) -> bool:
     """True if every order passes at nearly one frequency."""
     slow, fast = np.quantile(np.abs(pair.speed), [0.1, 0.9]).tolist()
     return bool(fast <= MAX_SPEED_RATIO * slow)
 
 
-def _speeds_of_amplitudes(found: Regressed, pair: Pair) -> str:
+def _speeds_of_amplitudes(fit: Regressed, pair: Pair) -> str:
     """Return the speeds of the input at which alone amplitudes are measured; empty if they are those of the gear."""
     one = _at_one_speed(pair)
-    if found.stage is not None or not pair.record.timed or not (found.vibrates or one):
+    if fit.stage is not None or not pair.record.timed or not (fit.vibrates or one):
         return ""
     slow, usual, fast = np.quantile(np.abs(pair.speed), [0.05, 0.5, 0.95]) / pair.record.step * 30.0 / pi
     return f"{usual:.4g} 1/min of the input" if one else f"{slow:.4g} to {fast:.4g} 1/min of the input"
 
 
-def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]], speeds: str) -> list[str]:
-    if found.stage is not None:
+def _stage_remarks(fit: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]], speeds: str) -> list[str]:
+    if fit.stage is not None:
         fastest = max((order for order, _ in chosen), default=0.0) * pair.fastest * every
-        if fastest < 0.3 * found.stage.frequency:
+        if fastest < 0.3 * fit.stage.frequency:
             return []
         return [
             "orders come near the natural frequency of the output, or pass it: their amplitudes are corrected for it, and less "

@@ -516,14 +516,14 @@ def _asked(plan: _Plan) -> dict[str, str]:
 
 def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
-    known = every(drive)
+    all_numbers = every(drive)
     arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
     for path, column in parameters.items():
-        if path not in known:
-            raise unknown(str(path), known)
+        if path not in all_numbers:
+            raise unknown(str(path), all_numbers)
         values[path] = arguments.numbers(path, column)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
@@ -531,7 +531,7 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
             raise ValueError(
                 f"{path} has {len(values[path])} values; one call has at most {MAX_MEMBERS} members: call it for parts"
             )
-        number = known[path]
+        number = all_numbers[path]
         wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= number.low) & (values[path] <= number.high)))
         if wrong.size:
             low, high = number.low, number.high
@@ -544,7 +544,7 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
-    return [known[path].number for path in values], values
+    return [all_numbers[path].number for path in values], values
 
 
 def _tell(failures: Mapping[int, str], members: int) -> None:

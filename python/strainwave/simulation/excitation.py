@@ -130,8 +130,7 @@ class Excitation:
 
     @cached_property
     def _first(self) -> Array:
-        start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
-        return start
+        return np.asarray(_core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0])
 
     def over(self, instants: Array) -> Array:
         """The same at the start, middle and end of each step between these instants [s], shape (n, 3, 6)."""
@@ -142,10 +141,10 @@ class Excitation:
         return inputs
 
 
-def _signal(given: Scenario | float) -> _core.Signal:
-    if isinstance(given, Scenario):
-        return given.signal
-    return _core.Signal(np.zeros(1), np.array([given], dtype=np.float64), np.zeros(1), np.empty(0))
+def _signal(value: Scenario | float) -> _core.Signal:
+    if isinstance(value, Scenario):
+        return value.signal
+    return _core.Signal(np.zeros(1), np.array([value], dtype=np.float64), np.zeros(1), np.empty(0))
 
 
 def check_temperature(lowest: float) -> None:

@@ -292,20 +292,20 @@ def _from_toml(content: Mapping[str, Any], units: Mapping[str, str]) -> Scenario
     return ScenarioFile(command, signals, _initial(content.get("initial", {})), **texts)
 
 
-def _initial(given: Any) -> dict[str, float]:
-    if not isinstance(given, dict):
-        raise ValueError(f"initial = {shortened(given)} must be a table; write [initial] with output_angle = {UNIT_EXAMPLE}")
+def _initial(table: Any) -> dict[str, float]:
+    if not isinstance(table, dict):
+        raise ValueError(f"initial = {shortened(table)} must be a table; write [initial] with output_angle = {UNIT_EXAMPLE}")
     with at("initial:"):
-        for name in given:
+        for name in table:
             _check_known(name, INITIAL_QUANTITIES)
-    return {name: _number(f"initial.{name}", value, INITIAL_QUANTITIES[name][1]) for name, value in given.items()}
+    return {name: _number(f"initial.{name}", value, INITIAL_QUANTITIES[name][1]) for name, value in table.items()}
 
 
-def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | float:
+def _signal(place: str, entry: Any, duration: float, unit: str) -> Scenario | float:
     """A number that stays, or the sum of the signals that a file lists at one place."""
-    if not isinstance(given, list) and not _has_kind(given):
-        return _number(place, given, unit)
-    each = given if isinstance(given, list) else [given]
+    if not isinstance(entry, list) and not _has_kind(entry):
+        return _number(place, entry, unit)
+    each = entry if isinstance(entry, list) else [entry]
     if not each:
         raise ValueError(f"{place} is empty; write [{place}] with kind = {_kinds()}")
     places = [place] if len(each) == 1 else [f"{place}[{i}]" for i in range(len(each))]
@@ -313,30 +313,30 @@ def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | fl
     return reduce(add, [_piece(place, piece, duration, unit, first=i == 0) for i, (place, piece) in pairs])
 
 
-def _has_kind(given: Any) -> bool:
-    return isinstance(given, dict) and ("kind" in given or "value" not in given)
+def _has_kind(entry: Any) -> bool:
+    return isinstance(entry, dict) and ("kind" in entry or "value" not in entry)
 
 
 def _kinds() -> str:
     return " or ".join(map(quoted, SIGNAL_KINDS))
 
 
-def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> Scenario:
+def _piece(place: str, entry: Any, duration: float, unit: str, first: bool) -> Scenario:
     """One of the signals that are added; but for the first, values in a unit with a zero of its own make no sense."""
-    if not _has_kind(given):
-        raise ValueError(f"{place} = {shortened(given)} must be a table with kind = {_kinds()}")
-    if (kind := given.get("kind")) is None:
+    if not _has_kind(entry):
+        raise ValueError(f"{place} = {shortened(entry)} must be a table with kind = {_kinds()}")
+    if (kind := entry.get("kind")) is None:
         raise ValueError(f"{place}.kind is missing; write kind = {_kinds()}")
     if not isinstance(kind, str) or kind not in SIGNAL_KINDS:
         near = get_close_matches(str(kind).lower(), SIGNAL_KINDS, n=1)
         hint = f"{'; near it is ' * bool(near)}{''.join(near)}; write kind = {_kinds()}"
         raise ValueError(f"{place}.kind = {shortened(kind)} is not known{hint}")
-    known = inspect.signature(SIGNAL_KINDS[kind]).parameters
-    entries = {key: value for key, value in given.items() if key != "kind"}
+    arguments_of_kind = inspect.signature(SIGNAL_KINDS[kind]).parameters
+    entries = {key: value for key, value in entry.items() if key != "kind"}
     with at(f"{place}: {kind}:"):
         for key in entries:
-            _check_known(key, [name for name in known if name != "duration"])
-    needed = [name for name, each in known.items() if each.default is each.empty and name != "duration"]
+            _check_known(key, [name for name in arguments_of_kind if name != "duration"])
+    needed = [name for name, each in arguments_of_kind.items() if each.default is each.empty and name != "duration"]
     if missing := [name for name in needed if name not in entries]:
         raise ValueError(f"{place}.{missing[0]} is missing; {kind} needs {listed(needed)}")
     numbers = {
@@ -344,7 +344,7 @@ def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> S
         for key, value in entries.items()
     }
     with at(f"{place}:"):
-        made = SIGNAL_KINDS[kind](**numbers, **({"duration": duration} if "duration" in known else {}))
+        made = SIGNAL_KINDS[kind](**numbers, **({"duration": duration} if "duration" in arguments_of_kind else {}))
     _check_duration(place, made, duration)
     return made
 
@@ -357,15 +357,15 @@ def _unit_of(argument: str, unit: str) -> str:
     return next((own for own, names in named.items() if argument in names), unit)
 
 
-def _number(place: str, given: Any, unit: str) -> float:
-    if isinstance(number := _numbers(place, given, unit), list):
-        raise ValueError(f"{place} = {shortened(given)} must be one number")
+def _number(place: str, entry: Any, unit: str) -> float:
+    if isinstance(number := _numbers(place, entry, unit), list):
+        raise ValueError(f"{place} = {shortened(entry)} must be one number")
     return float(number)
 
 
-def _numbers(place: str, given: Any, unit: str, absolute: bool = True) -> Any:
+def _numbers(place: str, entry: Any, unit: str, absolute: bool = True) -> Any:
     """A number or a list of numbers, in this unit; a file may write them in another."""
-    value, written = _with_unit(place, given) if isinstance(given, dict) else (given, unit)
+    value, written = _with_unit(place, entry) if isinstance(entry, dict) else (entry, unit)
     numbers = [arguments.number(place, each) for each in (value if isinstance(value, list) else [value])]
     with at(f"{place}:"):
         if not absolute and _in_unit(0.0, written, unit) != 0.0:
@@ -381,23 +381,23 @@ def _in_unit(values: Any, written: str, unit: str) -> Any:
         raise ValueError(f"{error}; this drive takes {unit}") from None
 
 
-def _with_unit(place: str, given: dict[str, Any]) -> tuple[Any, str]:
+def _with_unit(place: str, table: dict[str, Any]) -> tuple[Any, str]:
     with at(f"{place}:"):
-        for key in given:
+        for key in table:
             _check_known(key, ("value", "unit"))
-    if missing := [key for key in ("value", "unit") if key not in given]:
+    if missing := [key for key in ("value", "unit") if key not in table]:
         raise ValueError(f"{place}.{missing[0]} is missing; write {UNIT_EXAMPLE}, or a number in SI units")
-    return given["value"], arguments.text(f"{place}.unit", given["unit"])
+    return table["value"], arguments.text(f"{place}.unit", table["unit"])
 
 
 # Writing
 
 
-def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
+def _written(scenario_file: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of the file: texts and numbers before tables."""
-    content: dict[str, Any] = {key: text for key in TEXT_KEYS if (text := getattr(given, key))}
-    content["duration"] = _quantity(given.command.duration, "s")
-    signals = {"command": given.command, **given.inputs}
+    content: dict[str, Any] = {key: text for key in TEXT_KEYS if (text := getattr(scenario_file, key))}
+    content["duration"] = _quantity(scenario_file.command.duration, "s")
+    signals = {"command": scenario_file.command, **scenario_file.inputs}
     constant = {name: value for name, value in signals.items() if not isinstance(value, Scenario)}
     content |= {name: _quantity(float(value), units[name]) for name, value in constant.items()}
     for name, signal in signals.items():
@@ -408,9 +408,9 @@ def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
                 {"kind": kind} | {key: _quantity(value, _unit_of(key, units[name])) for key, value in entries.items()}
                 for kind, entries in terms
             ]
-    if given.initial:
+    if scenario_file.initial:
         content["initial"] = {
-            name: _quantity(float(value), INITIAL_QUANTITIES[name][1]) for name, value in given.initial.items()
+            name: _quantity(float(value), INITIAL_QUANTITIES[name][1]) for name, value in scenario_file.initial.items()
         }
     return content
 

@@ -198,21 +198,21 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
 
 
 def _value(name: str, value: ArrayLike, members: int) -> Array:
-    given = arguments.numbers(f"initial {name}", value)
-    if given.shape not in ((), (members,)):
+    values = arguments.numbers(f"initial {name}", value)
+    if values.shape not in ((), (members,)):
         each = "one value" if members == 1 else f"one value, or one for each of {members} members"
-        raise ValueError(f"initial {name} must be {each}, not of shape {given.shape}")
-    if not np.isfinite(given).all():
+        raise ValueError(f"initial {name} must be {each}, not of shape {values.shape}")
+    if not np.isfinite(values).all():
         raise ValueError(f"initial {name} must be finite")
-    return given
+    return values
 
 
 def _check_together(drive: Drive, names: set[str], prescribed: bool) -> None:
     """Refuse quantities that contradict each other, or that this drive does not have."""
-    given = names | ({"output_angle"} if prescribed else set())
+    names_given = names | ({"output_angle"} if prescribed else set())
     if prescribed and (inputs := names & {"output_angle", "output_speed"}):
         raise ValueError(f"initial {min(inputs)}: the load prescribes it; it is an input of the run")
-    angles, twists = given & {"input_angle", "output_angle"}, given & {"twist", "torque"}
+    angles, twists = names_given & {"input_angle", "output_angle"}, names_given & {"twist", "torque"}
     if len(twists) == 2 or (len(angles) == 2 and twists):
         too_many = sorted(twists | (angles if len(angles) == 2 else set()))
         raise ValueError(f"initial: of {listed(too_many)} each follows from the others; leave one out")

@@ -235,7 +235,11 @@ def compensate(
             others.append(judged(candidate, wanted, draws, plant))
         others.sort(key=lambda result: result.median(wanted.judged_by))
         chosen = _chosen(best, others, wanted)
-        before, after = _judged_anew(best, chosen, wanted, anew, plant)
+        before = after = judged(best.candidate, wanted, anew, plant)
+        if chosen is not best:  # the cascade in place of a controller that gains nothing on other gears
+            again = judged(chosen.candidate, wanted, anew, plant)
+            gains = again.median(wanted.judged_by) < (1.0 - MIN_GAIN) * before.median(wanted.judged_by)
+            after = again if gains else before
         remarks = list(_remarks(gear_set, plant, wanted, best))
         if chosen is not best and after is before:
             remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
@@ -267,16 +271,6 @@ def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str
             advice = f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
         raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{advice}")
     return cascades
-
-
-def _judged_anew(best: Judged, chosen: Judged, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> tuple[Judged, Judged]:
-    """Return cascade and chosen controller on other gears; the cascade in place of a controller that gains nothing there."""
-    before = judged(best.candidate, goal, draws, plant)
-    if chosen is best:
-        return before, before
-    after = judged(chosen.candidate, goal, draws, plant)
-    gains = after.median(goal.judged_by) < (1.0 - MIN_GAIN) * before.median(goal.judged_by)
-    return before, after if gains else before
 
 
 def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int, known_load: bool) -> dict[str, Array]:
@@ -317,16 +311,16 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: f
     """Return a goal by its name, at `pace` times its speed."""
     usual = USUAL_SPEED / abs(plant.ratio) * (CREEP_SPEED_SHARE if name == "smooth" else 1.0)
     usual = np.pi * TORQUE_FREQUENCY * travel if name == "torque" else usual
-    given = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
+    commanded = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
     unit = plant.effort_unit
     if name == "position":
-        return goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit, plant.period)
+        return goals.position(arguments.number("travel", travel, "rad", low=0.0), commanded, unit, plant.period)
     if name == "torque":
         load: Any = plant.drive.load
-        return goals.torque(load.stiffness * travel, load.stiffness, given, unit, plant.period)
+        return goals.torque(load.stiffness * travel, load.stiffness, commanded, unit, plant.period)
     if name == "speed":
-        return goals.speed(given, SPEED_GOAL_TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
-    return goals.smooth(given, CREEP_DURATION, unit)
+        return goals.speed(commanded, SPEED_GOAL_TURNS * 2.0 * np.pi / abs(plant.ratio) / commanded, unit)
+    return goals.smooth(commanded, CREEP_DURATION, unit)
 
 
 def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:

@@ -107,8 +107,8 @@ def judged(
 
 def numbers(drive: Drive, paths: Mapping[str, Array]) -> dict[str, float]:
     """Return the numbers of a drive that have these paths."""
-    known = every(drive)
-    return {path: known[path].value for path in paths}
+    of_drive = every(drive)
+    return {path: of_drive[path].value for path in paths}
 
 
 @dataclass(frozen=True)

@@ -82,14 +82,14 @@ def with_filter(plant: HeldPlant, gains: Array, measured: int, noise: Noise, rat
     if plant.is_late:  # the gains are those of input and disturbance together
         step[:count, -1], now[-1], feedback[-1] = plant.late, 1.0, gains[-1]
         feedback[count] += gains[-1]
-    known = count + 1  # what the filter estimates; the input before it knows
+    estimated = count + 1  # what the filter estimates; the input before it knows
     seen = np.zeros(size)
     seen[measured] = 1.0
-    process = np.zeros((known, known))
+    process = np.zeros((estimated, estimated))
     process[:count, :count] = noise.effort**2 * np.outer(disturbs, disturbs)
     process[count, count] = noise.effort_rate**2 * plant.period
     corrects = np.zeros(size)
-    corrects[:known] = filter_gain(step[:known, :known], seen[:known], process, noise.angle**2)
+    corrects[:estimated] = filter_gain(step[:estimated, :estimated], seen[:estimated], process, noise.angle**2)
     return _law(step - np.outer(now, feedback), now, feedback, corrects, ratio * seen, plant.period, limit)
 
 
@@ -195,7 +195,13 @@ def lqg(
         measured = linear.states.index("input_angle")
         return with_filter(late, late.gains(cost, limit), measured, noise, plant.ratio, plant.limit)
     gains = linear.measured_by_encoders().held(plant.period).gains(cost, limit)
-    _check_with_delay(linear, gains, plant)
+    step, driven = linear.held(plant.period, plant.delay).extended
+    radius = float(np.abs(np.linalg.eigvals(step - np.outer(driven, np.append(gains, 0.0)))).max())
+    if not radius < 1.0:
+        raise ValueError(
+            f"the loop is not stable with a delay of {plant.delay:g} s: its poles reach {radius:.4f} of the unit circle; "
+            "take a larger error, a smaller effort or a shorter delay"
+        )
     by_state = dict(zip(linear.states, gains.tolist(), strict=True))
     of_twist = by_state["transmission_error"]
     return control.StateFeedback(
@@ -217,15 +223,3 @@ def _noise(plant: Plant, resolution: float, torque_noise: float | None, disturba
     if disturbance_rate is not None:
         rate = arguments.number("disturbance_rate", disturbance_rate, "N.m/s^(1/2)", low=0.0)
     return Noise(angle=angle, effort=per_torque * torque, effort_rate=per_torque * rate)
-
-
-def _check_with_delay(linear: LinearPlant, gains: Array, plant: Plant) -> None:
-    """Refuse gains whose loop is not stable where the output comes late."""
-    step, driven = linear.held(plant.period, plant.delay).extended
-    loop = step - np.outer(driven, np.append(gains, 0.0))
-    radius = float(np.abs(np.linalg.eigvals(loop)).max())
-    if not radius < 1.0:
-        raise ValueError(
-            f"the loop is not stable with a delay of {plant.delay:g} s: its poles reach {radius:.4f} of the unit circle; "
-            "take a larger error, a smaller effort or a shorter delay"
-        )

@@ -307,10 +307,10 @@ class Loops:
         frequencies = np.unique(np.concatenate([whole, *peaks]))
         return np.asarray(frequencies[frequencies < highest])
 
-    def _response(self, transition: Array, given: NDArray[Any], read: Array, at: Array) -> Complex:
+    def _response(self, transition: Array, driven: NDArray[Any], read: Array, at: Array) -> Complex:
         shift = np.exp(1j * at * self.period)[:, np.newaxis, np.newaxis] * np.eye(len(transition))
-        given = np.broadcast_to(given, (len(at), len(transition)))
-        return np.asarray(np.linalg.solve(shift - transition, given[..., np.newaxis])[..., 0] @ read)
+        driven = np.broadcast_to(driven, (len(at), len(transition)))
+        return np.asarray(np.linalg.solve(shift - transition, driven[..., np.newaxis])[..., 0] @ read)
 
 
 def _free(held: HeldPlant, speed: Array, momentum: float, passed: float) -> Array:
