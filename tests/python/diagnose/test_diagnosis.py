@@ -13,7 +13,7 @@ from strainwave.diagnose.detection import FALSE_ALARM, threshold_of
 from strainwave.diagnose.diagnosis import Diagnosis, Question, RunDiagnosis, diagnosed
 from strainwave.diagnose.geometry import Geometry, Sensitivity
 from strainwave.diagnose.inversion import MisalignmentEstimate
-from strainwave.diagnose.reaction import CurrentPerError
+from strainwave.diagnose.possible_drives import CurrentPerError
 from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.report.diagnose import diagnose_summary
 

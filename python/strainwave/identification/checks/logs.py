@@ -23,7 +23,7 @@ from strainwave.identification.reading.units import MAX_JOINT_ANGLE
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, Check, HeldOut, is_uncertain
 from strainwave.messages import as_option, listed
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.orders.shaft_pair import Ratio
 from strainwave.orders.torque_ripple import ripple
 from strainwave.questions import NUMBER
@@ -437,7 +437,7 @@ def _coarser(recording: Recording, column: str) -> Recording:
     angle = np.unwrap(recording.values("output_angle", "rad"))
     step = np.abs(np.diff(angle))
     usual = float(np.median(step[step > 0.0])) if np.any(step > 0.0) else np.inf
-    period = np.pi / (RATIOS[-1] * usual)  # of the main line, in rows
+    period = np.pi / (STRAIN_WAVE_RATIOS[-1] * usual)  # of the main line, in rows
     every = max(1, min(int(period / MIN_ROWS_PER_PERIOD), len(angle) // MAX_ROWS_OF_RIPPLE))
     rows = min(len(angle) // every, MAX_ROWS_OF_RIPPLE) * every
     names = [name for name in ("time", "output_angle", column) if name in recording]

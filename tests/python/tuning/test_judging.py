@@ -9,10 +9,16 @@ import pytest
 import strainwave as sw
 from strainwave.tuning.candidates import baseline
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.conditions import TEMPERATURES, OverCompensation, conditions, depends_on_temperature, smaller_effect
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.goals import position
-from strainwave.tuning.judging import judged
+from strainwave.tuning.judging import (
+    OTHER_TEMPERATURES,
+    OverCompensation,
+    conditions,
+    depends_on_temperature,
+    judged,
+    smaller_effect,
+)
 
 from tests.support.compensated_joint import robot_joint
 
@@ -88,6 +94,6 @@ def test_a_gear_that_heats_up_is_cold_and_warm_from_the_begin() -> None:
     *_, cold, warm = (each.baseline for each in conditions(both, lambda pace: goal, draws, plant))
     assert warm.median("tracking error") != pytest.approx(cold.median("tracking error"), rel=0.01)
     kept = replace(cascade, drive=cascade.drive.replace(thermal=sw.thermal.Isothermal()))
-    for found, temperature in zip((cold, warm), TEMPERATURES.values(), strict=True):
+    for found, temperature in zip((cold, warm), OTHER_TEMPERATURES.values(), strict=True):
         expected = judged(kept, goal, draws, plant, temperature=temperature).figures["tracking error"]
         assert found.figures["tracking error"] == pytest.approx(expected, rel=2e-3)

@@ -10,7 +10,7 @@ import strainwave as sw
 from numpy.testing import assert_allclose
 from strainwave.diagnose.actuator_ramp import ActuatorRamp, wave_generator
 from strainwave.diagnose.inversion import displaced, harmonics
-from strainwave.diagnose.reaction import CurrentPerError, current_per_error, parts_over_load
+from strainwave.diagnose.possible_drives import CurrentPerError, current_per_error, parts_over_load
 from strainwave.orders.order_spectrum import order_amplitudes
 
 from tests.support.signature_drive import AMPLITUDE, ORDER, ideal_current, signature_ramp
