@@ -1,24 +1,28 @@
-"""Guides whoever makes a torsion test, step by step, and writes each down as soon as it is done."""
+"""Guide for whoever makes a torsion test: pictures of a camera or a folder, step by step, each recorded at once."""
 
 from __future__ import annotations
 
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from strainwave.files.budget import RefusedFile, read_regular
 from strainwave.files.writing import DRAFT
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import FILE, append_step, read_steps
-from strainwave.rig.running.sources import PictureSource
+from strainwave.messages import one_line
+from strainwave.rig.bench.steps import FILE, Step, append_step, read_steps
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES
+from strainwave.rig.vision.image import pictures_in
 
 AT_REST_PROBABILITY = 0.99  # share of readings at rest that count as at rest [1]
 ZERO_CELSIUS = 273.15  # K
+Array = NDArray[np.float64]
 
 
 class Look(NamedTuple):
@@ -279,3 +283,87 @@ def _made(planned: Step, answered: Reply, image: str, since: float) -> Step:
     if answered.masses is not None:
         step = replace(step, mass_positive=answered.masses[0], mass_negative=answered.masses[1])
     return step
+
+
+class PictureSource(Protocol):
+    """Source of pictures of the target, one after the other."""
+
+    def take(self, folder: Path) -> Path | None:
+        """Put a new picture into a folder and return its path; None if there is none yet."""
+
+
+class Device:
+    """A camera that opencv can open, by its number.
+
+    Raises:
+        ImportError: opencv is not installed
+        OSError: the camera cannot be opened
+    """
+
+    def __init__(self, number: int) -> None:
+        try:
+            import cv2
+        except ImportError:
+            raise ImportError(
+                "a camera needs opencv, which is not installed; install strainwave[video], "
+                "or let another program fill a folder and give that folder as --camera"
+            ) from None
+        self.number = number
+        self.capture: Any = cv2.VideoCapture(number)
+        if not self.capture.isOpened():
+            raise OSError(f"camera {number} cannot be opened; is it plugged in, and in use by no other program?")
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now, as PNG; `OSError` if the camera gives none."""
+        from PIL import Image
+
+        came, picture = self.capture.read()
+        if not came:
+            raise OSError(f"camera {self.number} gives no picture; is it still plugged in?")
+        path = folder / "picture.png"
+        Image.fromarray(np.ascontiguousarray(picture[..., ::-1] if picture.ndim == 3 else picture)).save(path)
+        return path
+
+
+@dataclass
+class Filled:
+    """A folder that another program fills; pictures that lie there already are left aside, and symbolic links.
+
+    Raises:
+        FileNotFoundError: there is no such folder
+    """
+
+    folder: Path
+    seen: set[tuple[str, int, int]] = field(default_factory=set)
+    sizes: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.folder.is_dir():
+            raise FileNotFoundError(f"--camera {self.folder}: there is no such folder")
+        self.seen |= {self._mark(path) for path in self._pictures()}
+
+    def take(self, folder: Path) -> Path | None:
+        """A copy of the newest picture that is new, once it has not grown since the last look."""
+        new = [path for path in self._pictures() if self._mark(path) not in self.seen and self._complete(path)]
+        self.seen |= {self._mark(path) for path in new}
+        if not new:
+            return None
+        copy = folder / f"picture{new[-1].suffix.lower()}"
+        try:
+            copy.write_bytes(read_regular(new[-1], MAX_PICTURE_BYTES))
+        except RefusedFile as error:
+            raise ValueError(one_line(f"--camera {new[-1]} {error}")) from None
+        return copy
+
+    def _pictures(self) -> list[Path]:
+        return sorted(pictures_in(self.folder), key=lambda path: (path.stat().st_mtime_ns, path.name))
+
+    def _complete(self, path: Path) -> bool:
+        size, before = path.stat().st_size, self.sizes.get(path.name)
+        self.sizes[path.name] = size
+        return size > 0 and size == before
+
+    @staticmethod
+    def _mark(path: Path) -> tuple[str, int, int]:
+        found = path.stat()
+        return path.name, found.st_mtime_ns, found.st_size

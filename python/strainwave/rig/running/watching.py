@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from strainwave.rig.bench.setup import Camera, Rig
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import FILE, read_steps
+from strainwave.rig.bench.steps import FILE, Step, read_steps
+from strainwave.rig.bench.torque import torque_of_masses
 from strainwave.rig.running.guide import Look
 from strainwave.rig.vision.angle import Frame, follow, look
 from strainwave.rig.vision.image import by_number, pictures_in
@@ -104,16 +104,6 @@ def _torque(rig: Rig | None, step: Step) -> float | None:
     if step.torque is not None or rig is None:
         return step.torque
     return torque_of_masses(rig, step)
-
-
-def torque_of_masses(rig: Rig, step: Step) -> float:
-    """Torque of what lies on the pans at the full radius, pulleys left out [N.m]: what is shown while a test is being made.
-
-    >>> from strainwave.rig import load
-    >>> round(torque_of_masses(load("couple-rig"), Step(1, mass_positive=0.35)), 4)
-    0.3432
-    """
-    return (step.mass_positive - step.mass_negative) * rig.gravity.value * rig.disk_radius.value
 
 
 @dataclass

@@ -23,8 +23,7 @@ from strainwave.presentation import Presented
 from strainwave.progress import Progress, by_count
 from strainwave.rig.bench.rig_file import write_rig
 from strainwave.rig.bench.setup import Rig
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import append_step
+from strainwave.rig.bench.steps import Step, append_step
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render, usual_scene
 
@@ -312,3 +311,56 @@ def _write_picture(picture: NDArray[Any], path: Path) -> None:
     Image.fromarray(picture).save(content, "png", compress_level=1)
     with replacing(path) as file:
         file.write(content.getvalue())
+
+
+@dataclass
+class Virtual:
+    """A virtual rig: the scene of a target whose shaft comes to rest at the angle of a step.
+
+    Args:
+        scene: what is seen
+        angles: of the shaft at rest, step by step [rad], shape (n,)
+        random: gives the noise of the pictures
+        settling: share of the way that is left from one picture to the next [1]
+    """
+
+    scene: Scene
+    angles: Array
+    random: np.random.Generator
+    settling: float = 0.1
+    step: int = 0
+    angle: float = 0.0
+
+    def load(self, number: int) -> None:
+        """Lays on what a step asks for, by its number from 1."""
+        self.angle = float(self.angles[number - 2]) if number > 1 else float(self.angles[0])
+        self.step = number - 1
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now; the shaft is nearer to rest with each."""
+        path = folder / "picture.png"
+        _write_picture(render(self.scene, self.angle, self.random), path)
+        rest = float(self.angles[self.step])
+        self.angle = rest + self.settling * (self.angle - rest)
+        return path
+
+
+def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gear], seed: int | None = None) -> Virtual:
+    """Pictures of a gear on a virtual rig, which comes to rest at each step of a plan.
+
+    Args:
+        rig: the rig as it is
+        steps: the plan
+        gear: which gear, or for each position and unit another one: a function of a step
+        seed: of the noise; another one each time if None
+
+    >>> from strainwave.rig import Step, load
+    >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("torsional-stiffness-article"))
+    >>> source.angles.round(4).tolist()
+    [0.0, -0.0109]
+    """
+    angles = []
+    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+        own = list(group)
+        angles.append(load_by_steps(gear if isinstance(gear, Gear) else gear(own[0]), rig, own).angle)
+    return Virtual(usual_scene(rig), np.concatenate(angles), np.random.default_rng(seed))

@@ -8,27 +8,32 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.report import rig_plates, rig_setup
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_numbers import sentence, stated
-from strainwave.report.rig_tables import (
+from strainwave.rig.analysis.analysis import table
+from strainwave.rig.analysis.lost_motion import LOST_MOTION
+from strainwave.rig.analysis.result import Result
+from strainwave.rig.analysis.stiffness import SOFT_COMPLIANCE_RATIO
+from strainwave.rig.reading.evaluation import Evaluation
+from strainwave.rig.report.figures import angle_unit, overlay_figure, quality_figure
+from strainwave.rig.report.tables import (
     OF_REGIMES,
     TITLES,
     budget_parts,
     catalogue_rows,
+    centre_words,
     comparison_part,
     document_rows,
     loop_part,
+    photographs,
     ratio_of,
+    rig_rows,
+    sentence,
     source_rows,
+    stated,
+    step_rows,
     stiffness_table,
 )
-from strainwave.rig.analysis.analysis import table
-from strainwave.rig.analysis.lost_motion import LOST_MOTION
-from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
-from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, fixed, number
 
 
@@ -58,22 +63,22 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         "document": list(document_rows()),
         "ratio": ratio_of(found),
         "loops": [loop_part(found, number) for number in range(len(found.analyses))],
-        "overlay": rig_plates.overlay(found),
+        "overlay": overlay_figure(found),
         "comparisons": [comparison_part(found, each) for each in found.comparisons],
         "catalogue": list(catalogue_rows(found)),
         "budgets": list(budget_parts(found)),
-        "quality": rig_plates.quality(found),
-        "photographs": rig_setup.photographs(found.angles),
-        "centres": rig_setup.centre_words(found.angles),
-        "steps": list(rig_setup.step_rows(found)),
+        "quality": quality_figure(found),
+        "photographs": list(photographs(found.angles)),
+        "centres": centre_words(found.angles),
+        "steps": list(step_rows(found)),
         "deviations": None if found.deviations is None else [sentence(each) for each in found.deviations],
-        "rows": [] if found.rig is None else rig_setup.rig_rows(found.rig),
+        "rows": [] if found.rig is None else rig_rows(found.rig),
         "rig": found.rig,
         "sources": list(source_rows(found)),
         "multiple": number(SOFT_COMPLIANCE_RATIO),
         "files": files,
     }
-    return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance)
+    return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance, "strainwave.rig.report")
 
 
 def _sections(content: dict[str, Any]) -> dict[str, str]:
@@ -147,7 +152,7 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     yield _card(
         "Loading", soft, 1.0, "N·m/rad", f"Stiffness of the softest stretch on the way from zero torque to a peak, {over}."
     )
-    unit, scale = rig_plates.angle_unit(found.loops[0])
+    unit, scale = angle_unit(found.loops[0])
     widths = [row.hysteresis for row in rows]
     at_output = ""
     if (ratio := ratio_of(found)) is not None and (known := [each for each in widths if each is not None]):
@@ -207,7 +212,7 @@ def _with_labels(found: Evaluation, remarks: Sequence[Sequence[str]]) -> list[st
 def _catalogued(found: Evaluation) -> Iterator[str]:
     """Yield the widths that catalogues state, of each loop that determines them."""
     for label, analysis in zip(found.labels, found.analyses, strict=True):
-        unit, scale = rig_plates.angle_unit(analysis.loop)
+        unit, scale = angle_unit(analysis.loop)
         of = f"{label}: " if len(found.labels) > 1 else ""
         level = f"±{number(LOST_MOTION * (analysis.rated_torque or 0.0), 3)} N·m, 4 % of the rated torque"
         words = f"whole angle between {level}" if analysis.whole_angle else f"mean width at {level}"

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import degrees, floor, log10
-from typing import Any
+import re
+from collections.abc import Iterator, Sequence
+from math import degrees, floor, isfinite, log10
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from strainwave.report import rig_plates
-from strainwave.report.rig_numbers import Stated, sentence, stated
 from strainwave.rig.analysis.analysis import DEFINITIONS, Definition, LoopAnalysis, table
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck
 from strainwave.rig.analysis.comparison import ComparedQuantity, Comparison
 from strainwave.rig.analysis.regimes import NAMES
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO, words_on_band
-from strainwave.rig.analysis.stiffness import closure_of_secants, soft_parts
+from strainwave.rig.analysis.stiffness import SOFT_COMPLIANCE_RATIO, closure_of_secants, soft_parts, words_on_band
+from strainwave.rig.bench.setup import Camera, Rig, Value
+from strainwave.rig.bench.torque import Budget
 from strainwave.rig.reading.evaluation import Evaluation, budgets
-from strainwave.rig.torque.budget import Budget
+from strainwave.rig.report.figures import angle_unit, comparison_figure, loop_figure, stiffness_figure
 from strainwave.rig.virtual.printed import PEAK_TORQUE, TABLE_2
-from strainwave.typeset import ARCMIN_PER_RADIAN, fixed, number
+from strainwave.rig.vision.angle import Angles
+from strainwave.typeset import ARCMIN_PER_RADIAN, ARCSEC_PER_DEGREE, ZERO_CELSIUS, fixed, number, uncertain
 
 OF_REGIMES = tuple(name.replace("_", " ") for name in NAMES)  # how remarks on one regime begin
 BAND = (0.1, 0.2)  # N.m: where the torsional stiffness article saw its soft spot
@@ -29,6 +30,62 @@ TITLES: dict[Definition, str] = {
     "regression": "Stiffness by regression: one straight line through each regime",
     "secant": "Stiffness by secant: peak torque over the angle from zero torque to the peak",
 }
+DEFAULT_DIGITS = 4  # of a value whose uncertainty is not known
+MAX_DIGITS = 6  # of a value, however small its uncertainty
+
+
+class Stated(NamedTuple):
+    """A number in print.
+
+    Attributes:
+        value: rounded to what its interval allows
+        interval: both ends, empty if the uncertainty is not known
+    """
+
+    value: str
+    interval: str
+
+    def __str__(self) -> str:
+        return f"{self.value} ({self.interval})" if self.interval else self.value
+
+
+def stated(found: Result | None, scale: float = 1.0) -> Stated:
+    """A number times a scale, rounded to the second digit of half its interval.
+
+    >>> str(stated(Result(4.5123, "N.m/rad", 0.04, 0.02, 4.4247, 4.5999)))
+    '4.512 (4.425 to 4.600)'
+    >>> str(stated(Result(0.30634, "J", float("nan"), 0.0, float("nan"), float("nan"))))
+    '0.3063'
+    >>> str(stated(None))
+    '—'
+    """
+    if found is None or not isfinite(found.value):
+        return Stated("—", "")
+    value, low, high = (scale * each for each in (found.value, found.low, found.high))
+    if not (isfinite(high - low) and high > low):
+        return Stated(
+            number(value, DEFAULT_DIGITS),
+            f"{number(low, DEFAULT_DIGITS)} to {number(high, DEFAULT_DIGITS)}" if high > low else "",
+        )
+    places = 1 - floor(log10(0.5 * (high - low)))
+    most = MAX_DIGITS - 1 - floor(log10(max(abs(low), abs(high))))
+    if not -3 <= min(places, most) <= MAX_DIGITS:
+        return Stated(number(value, MAX_DIGITS), f"{number(low, MAX_DIGITS)} to {number(high, MAX_DIGITS)}")
+    texts = [fixed(each, min(places, most)) for each in (value, low, high)]
+    return Stated(texts[0], f"{texts[1]} to {texts[2]}" if texts[1] != texts[2] else f"± {number(0.5 * (high - low), 1)}")
+
+
+def sentence(words: str) -> str:
+    """Words as a sentence in print: signs and units set as such.
+
+    >>> sentence("soft from -0.1 N.m on")
+    'Soft from −0.1 N·m on.'
+    >>> sentence("step-005.png: is empty")
+    'step-005.png: is empty.'
+    """
+    signed = re.sub(r"(?<![\w.])-(?=\d)", "−", words.replace("N.m", "N·m"))
+    first = signed[0] if re.match(r"\S+\.[A-Za-z]+:", signed) else signed[0].upper()  # a file's name stays as it is
+    return f"{first}{signed[1:]}."
 
 
 def ratio_of(found: Evaluation) -> float | None:
@@ -38,12 +95,11 @@ def ratio_of(found: Evaluation) -> float | None:
     return abs(float(found.gear_set.gear.kinematics.ratio))
 
 
-# ---- The torsional stiffness article's Table 2
-# --------------------------------------------------------------------------------------------
+# ---- The torsional stiffness article's Table 2 ------------------------------------------------------------------------
 
 
 def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]:
-    unit, scale = rig_plates.angle_unit(found.loops[0])
+    unit, scale = angle_unit(found.loops[0])
     ratio = ratio_of(found)
     rows = []
     for label, row in zip(found.labels, table(found.analyses, definition), strict=True):
@@ -84,8 +140,8 @@ def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
     return {
         "label": found.labels[place],
         "span": f"{len(analysis.loop)} points from {fixed(low, 3)} to {fixed(high, 3)} N·m",
-        "figure": rig_plates.loop(analysis, found.labels[place], f"loop-{place}", ratio),
-        "stiffness_figure": rig_plates.stiffness(analysis, found.labels[place], f"stiffness-{place}"),
+        "figure": loop_figure(analysis, found.labels[place], f"loop-{place}", ratio),
+        "stiffness_figure": stiffness_figure(analysis, found.labels[place], f"stiffness-{place}"),
         "rows": list(_width_rows(analysis, ratio)),
         "ratio": ratio,
         "soft": list(_soft_rows(analysis)),
@@ -96,7 +152,7 @@ def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
 
 def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[str, str, Stated, Stated, str]]:
     """Yield for each width its name, its definition, its value at the loaded shaft and at the output, and the unit."""
-    unit, scale = rig_plates.angle_unit(analysis.loop)
+    unit, scale = angle_unit(analysis.loop)
 
     def angle(name: str, words: str, found: Result | None) -> tuple[str, str, Stated, Stated, str]:
         at_output = stated(found, ARCMIN_PER_RADIAN / ratio) if ratio else Stated("", "")
@@ -171,7 +227,7 @@ def comparison_part(found: Evaluation, comparison: Comparison) -> dict[str, Any]
         "title": what,
         "groups": comparison.quantities[0].groups if comparison.quantities else (),
         "rows": [_compared(each, found) for each in comparison.quantities],
-        "figure": rig_plates.comparison(found, comparison),
+        "figure": comparison_figure(found, comparison),
         "remarks": [sentence(each) for each in comparison.remarks],
     }
 
@@ -206,7 +262,7 @@ def _probability(value: float) -> str:
 def _in_print(unit: str, found: Evaluation) -> tuple[str, float]:
     """The unit that a quantity is printed in, and the factor to it."""
     if unit == "rad":
-        return rig_plates.angle_unit(found.loops[0])
+        return angle_unit(found.loops[0])
     return ("mJ", 1e3) if unit == "J" else (unit.replace(".", "·"), 1.0)
 
 
@@ -292,3 +348,136 @@ def _own(found: Evaluation, analysis: LoopAnalysis) -> Iterator[str]:
     for remark in analysis.remarks:
         if remark.startswith(OF_REGIMES) or any(remark not in each.remarks for each in found.analyses):
             yield remark
+
+
+class RigRow(NamedTuple):
+    """A number of the rig, ready to print."""
+
+    name: str
+    value: str
+    unit: str
+    source: str
+
+
+def rig_rows(rig: Rig) -> list[RigRow]:
+    """Every number of a rig with its standard deviation and its source, in the units of the workshop."""
+    return [*_loading(rig), *_masses(rig), *_target(rig), *_camera(rig.camera)]
+
+
+def _row(name: str, given: Value, scale: float, unit: str) -> RigRow:
+    value = uncertain(scale * given.value, scale * given.sigma) if given.sigma > 0.0 else number(scale * given.value)
+    return RigRow(name, value, unit, given.source)
+
+
+def _loading(rig: Rig) -> Iterator[RigRow]:
+    yield RigRow("Loaded shaft", rig.side, "", "the other shaft and the circular spline are held")
+    yield _row("Radius of the disk", rig.disk_radius, 1e3, "mm")
+    yield _row("Gravity", rig.gravity, 1.0, "m/s²")
+    if rig.cord == "wound":
+        yield RigRow("Cords", "wound on the rim", "", "the arm is the disk's radius at every angle")
+    else:
+        yield RigRow(
+            "Cords", "from a fixed point of the rim", "", "the arm is r cos(angle − angle at which the cord is tangent)"
+        )
+        yield _row("Angle at which the cord is tangent", rig.cord_tangent, degrees(1.0), "°")
+    yield _row("Friction of the pulleys, whatever the load", rig.pulley_torque, 1e3, "mN·m at the disk")
+    yield _row("Friction of the pulleys, share of the torque", rig.pulley_share, 1e2, "%")
+    yield _row("Compliance of coupling and frame", rig.compliance, 1e3, "mrad/(N·m)")
+
+
+def _masses(rig: Rig) -> Iterator[RigRow]:
+    for masses in rig.masses:
+        yield _row(f"{masses.count} masses of", Value(masses.mass, masses.sigma, masses.source), 1e3, "g each")
+
+
+def _target(rig: Rig) -> Iterator[RigRow]:
+    for name, given in (("Diameter of the markers", rig.markers_diameter), ("Distance of the markers", rig.markers_distance)):
+        if given is not None:
+            yield _row(name, given, 1e3, "mm")
+
+
+def _camera(camera: Camera) -> Iterator[RigRow]:
+    def source(*keys: str) -> str:
+        return "; ".join(dict.fromkeys(camera.sources[key] for key in keys if key in camera.sources))
+
+    if camera == Camera(sources=camera.sources):
+        yield RigRow(
+            "Camera",
+            "not calibrated",
+            "",
+            "taken to look straight at the target, through a lens without distortion, at square pixels",
+        )
+        return
+    yield RigRow("Width of a pixel over its height", number(camera.aspect), "", source("aspect"))
+    yield RigRow("Tilt of the camera", number(degrees(camera.tilt), 4), "°", source("tilt"))
+    if camera.tilt:
+        yield RigRow(
+            "Direction in which the target recedes", number(degrees(camera.tilt_direction), 4), "°", source("tilt_direction")
+        )
+    if camera.distance is not None:
+        yield RigRow("Distance of the target", number(camera.distance, 5), "px", source("distance"))
+    if camera.centre is not None:
+        centre = ", ".join(number(each, 5) for each in camera.centre)
+        yield RigRow("Centre of distortion and perspective", centre, "px", source("centre[0]", "centre[1]"))
+    if any(camera.radial):
+        radial = ", ".join(number(each, 4) for each in camera.radial)
+        yield RigRow("Distortion of the lens, k₁, k₂", radial, "px⁻², px⁻⁴", source("radial[0]", "radial[1]"))
+
+
+# ---- Photographs -----------------------------------------------------------------------------------------------------
+
+
+def photographs(angles: Sequence[Angles]) -> Iterator[dict[str, str]]:
+    """Yield every photograph of a test with its angle, the worst of its two markers, and its warnings."""
+    columns = ("angle", "sigma", "residual", "contrast", "blur", "arc")
+    for each in angles:
+        angle_of = {frame.name: (angle, sigma) for frame, angle, sigma in zip(each.useful, each.angle, each.sigma, strict=True)}
+        for frame in each.frames:
+            remark = "; ".join([*([f"of no use: {frame.fault}"] if frame.fault else []), *frame.warnings])
+            cells = ["—"] * len(columns)
+            if frame.markers is not None:
+                angle, sigma = (degrees(number) for number in angle_of[frame.name])
+                cells = [
+                    fixed(angle, 4),
+                    fixed(ARCSEC_PER_DEGREE * sigma, 1),
+                    fixed(max(marker.residual for marker in frame.markers), 3),
+                    fixed(min(marker.contrast for marker in frame.markers), 2),
+                    fixed(max(marker.blur for marker in frame.markers), 2),
+                    f"{fixed(100.0 * min(marker.arc for marker in frame.markers), 0)} %",
+                ]
+            row = dict(zip(columns, cells, strict=True))
+            yield {"name": frame.name, **row, "remark": remark, "sha256": frame.sha256}
+
+
+def centre_words(angles: Sequence[Angles]) -> list[str]:
+    """About which point the disk turned, and whether the couple was pure."""
+    words = []
+    for each in angles:
+        if each.centre is None:
+            words.append(
+                f"With {each.reference} at 0: the turn is too small to determine the point about which the disk turned."
+            )
+        else:
+            x, y, rms = each.centre
+            words.append(
+                f"With {each.reference} at 0: the disk turned about ({fixed(x, 1)}, {fixed(y, 1)}) px; "
+                f"the markers keep to circles about it within {fixed(rms, 3)} px rms."
+            )
+    return words
+
+
+# ---- Steps -----------------------------------------------------------------------------------------------------------
+
+
+def step_rows(found: Evaluation) -> Iterator[list[str]]:
+    """Every step with its masses, time and temperature."""
+    for step in found.steps:
+        yield [
+            str(step.number),
+            f"{f'{step.unit}, ' if step.unit else ''}{degrees(step.position):.6g}°",
+            fixed(1e3 * step.mass_positive, 1) if step.torque is None else "—",
+            fixed(1e3 * step.mass_negative, 1) if step.torque is None else "—",
+            "" if step.time is None else fixed(step.time, 0),
+            "" if step.temperature is None else fixed(step.temperature - ZERO_CELSIUS, 1),
+            step.image or "angle read otherwise",
+        ]
