@@ -30,7 +30,7 @@ from strainwave.rig.reading.evaluation import EvaluationOptions, evaluate_paths
 from strainwave.rig.reading.measurement import PLAN
 from strainwave.rig.report.files import evaluation_files, loop_names
 from strainwave.rig.report.influence import influence_report, summary as trend_lines
-from strainwave.rig.report.live import Point, Terminal, live
+from strainwave.rig.report.live import Terminal, live
 from strainwave.rig.report.page import summary
 from strainwave.rig.running.guide import Device, Filled, PictureSource, Settling, conduct, done_before
 from strainwave.rig.running.plan import Pans, Plan, plan
@@ -281,11 +281,8 @@ def watch(
     planned = kept if plan is None and kept.exists() else plan
     watched = Watch(folder, bench, read_steps(planned) if planned is not None else ())
 
-    def look() -> list[Point]:
-        return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
-
     longest = inf if idle is None else _seconds("--idle", idle)
-    points = live(Console(stderr=True), look, longest, _seconds("--interval", interval))
+    points = live(Console(stderr=True), watched.new, longest, _seconds("--interval", interval))
     read = sum(not point.look.fault for point in points)
     print(f"{len(points)} photographs, {read} of them with an angle")
 

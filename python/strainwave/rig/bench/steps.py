@@ -12,6 +12,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from itertools import pairwise
+from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +67,11 @@ class Step:
     position: float = 0.0
     unit: str = ""
 
+    @property
+    def place(self) -> tuple[float, str]:
+        """Position of the flexspline [rad], and specimen."""
+        return self.position, self.unit
+
     def __post_init__(self) -> None:
         arguments.whole("number", self.number, low=1)
         for name in ("mass_positive", "mass_negative"):
@@ -79,6 +85,20 @@ class Step:
                 signed(name, value, unit)
         if self.temperature is not None:
             positive("temperature", self.temperature, "K")
+
+
+def by_place(steps: Sequence[Step]) -> dict[tuple[float, str], list[Step]]:
+    """Return the steps of each position and specimen, in the order made."""
+    places: dict[tuple[float, str], list[Step]] = {}
+    for step in steps:
+        places.setdefault(step.place, []).append(step)
+    return places
+
+
+def place_words(place: tuple[float, str]) -> str:
+    """Return a position of the flexspline and a specimen in words."""
+    position, unit = place
+    return f"{f'unit {unit}, ' if unit else ''}flexspline at {degrees(position):.6g} degrees"
 
 
 def _check_name(name: str, text: str) -> None:
@@ -100,7 +120,8 @@ UNITS = {
     "temperature": ("K", "degC"),
     "position": ("rad", "deg"),
 }
-COLUMNS = tuple(field.name for field in fields(Step))
+DEFAULTS = {field.name: field.default for field in fields(Step)}
+COLUMNS = tuple(DEFAULTS)
 HEADER = {name: f"{name} [{UNITS[name][1]}]" if name in UNITS else name for name in COLUMNS}
 
 
@@ -159,11 +180,11 @@ def write_steps(steps: Sequence[Step], path: str | Path) -> None:
         raise ValueError("there are no steps to write")
     for pair in pairwise(steps):
         _check_order(pair)
-    defaults = {field.name: field.default for field in fields(Step)}
-    used = [name for name in COLUMNS if any(getattr(step, name) != defaults[name] for step in steps)]
+    used = [name for name in COLUMNS if any(getattr(step, name) != DEFAULTS[name] for step in steps)]
     if any(step.torque is None for step in steps):
         used = [name for name in COLUMNS if name in (*used, *MASSES)]
-    _write(path, [_row([HEADER[name] for name in used]), *(_written(step, used) for step in steps)])
+    with replacing(_file(path)) as file:
+        file.write("".join([_row([HEADER[name] for name in used]), *(_written(step, used) for step in steps)]).encode())
 
 
 def append_step(step: Step, path: str | Path) -> None:
@@ -188,13 +209,20 @@ def append_step(step: Step, path: str | Path) -> None:
     """
     file = _file(path)
     if not file.exists():
-        _write(file, [_row(HEADER.values()), _written(step, COLUMNS)])
+        with replacing(file) as draft:
+            draft.write((_row(HEADER.values()) + _written(step, COLUMNS)).encode())
         return
     table, before = open_csv(file), read_steps(file)
     with at(table.file):
         _check_order((before[-1], step))
         labels = _labels(table.labels)
-        _check_columns(step, labels)
+        needed = [name for name in COLUMNS if getattr(step, name) != DEFAULTS[name]]
+        if step.torque is None and not labels.keys() & {*MASSES}:
+            needed = [name for name in COLUMNS if name in (*needed, *MASSES)]
+        if missing := [name for name in needed if name not in labels]:
+            raise ValueError(
+                f"has no column {missing[0]}, which step {step.number} has; add {HEADER[missing[0]]} to its header"
+            )
     with replacing(file) as draft:
         content = file.read_bytes()
         draft.write(content if content.endswith(b"\n") else content + b"\n")
@@ -219,7 +247,7 @@ def photograph_of(step: Step, folder: Path) -> Path:
 
 
 def _labels(labels: Sequence[Label]) -> dict[str, Label]:
-    """The columns by name, once all are known, and those that are needed are there."""
+    """Return the columns by name; refuse unknown, repeated and missing ones."""
     named = {label.name: label for label in labels}
     if unknown := [label.name for label in labels if label.name not in COLUMNS]:
         raise ValueError(f"has a column {quoted(unknown[0])}; the steps of a test have {listed(COLUMNS)}")
@@ -244,24 +272,17 @@ def _read_row(cells: Mapping[str, str], labels: Mapping[str, Label], delimiter: 
     for name, cell in cells.items():
         with at(f"column {quoted(name)}:"):
             if name == "number":
-                members[name] = _whole(cell)
+                if not re.fullmatch(r"[0-9]{1,9}", cell):
+                    raise ValueError(f"{quoted(cell)} must be a whole number, from 1 to 999999999")
+                members[name] = int(cell)
             elif name in TEXTS:
                 members |= {name: cell} if cell else {}
             elif cell:
-                members[name] = convert(_number(cell, delimiter), str(labels[name].unit), UNITS[name][0])
+                number = number_in(cell if delimiter == "," else cell.replace(",", "."))
+                members[name] = convert(number, str(labels[name].unit), UNITS[name][0])
             else:
                 _check_empty(name, cells)
     return Step(**members)
-
-
-def _whole(cell: str) -> int:
-    if not re.fullmatch(r"[0-9]{1,9}", cell):
-        raise ValueError(f"{quoted(cell)} must be a whole number, from 1 to 999999999")
-    return int(cell)
-
-
-def _number(cell: str, delimiter: str) -> float:
-    return number_in(cell if delimiter == "," else cell.replace(",", "."))
 
 
 def _check_empty(name: str, cells: Mapping[str, str]) -> None:
@@ -280,18 +301,8 @@ def _check_order(steps: Sequence[Step]) -> None:
 # Writing
 
 
-def _check_columns(step: Step, labels: Mapping[str, Label]) -> None:
-    defaults = {field.name: field.default for field in fields(Step)}
-    needed = {name for name in COLUMNS if getattr(step, name) != defaults[name]}
-    if step.torque is None and not labels.keys() & {*MASSES}:
-        needed |= {*MASSES}
-    missing = [name for name in COLUMNS if name in needed - labels.keys()]
-    if missing:
-        raise ValueError(f"has no column {missing[0]}, which step {step.number} has; add {HEADER[missing[0]]} to its header")
-
-
 def _written(step: Step, names: Sequence[str], labels: Mapping[str, Label] | None = None, delimiter: str = ",") -> str:
-    """The row of a step, in the units of the header, or in those that are usual."""
+    """Return the row of a step, in the units of the header or the usual ones."""
     cells = []
     for name in names:
         value = getattr(step, name)
@@ -304,7 +315,7 @@ def _written(step: Step, names: Sequence[str], labels: Mapping[str, Label] | Non
 
 
 def _shortest(value: float, unit: str, written: str) -> str:
-    """A number in another unit, with as few digits as are needed to read the same back."""
+    """Return a number in another unit, in the fewest digits that are read back the same."""
     if unit == written:
         return repr(float(value))
     converted = convert(float(value), unit, written)
@@ -316,8 +327,3 @@ def _row(cells: Any, delimiter: str = ",") -> str:
     text = io.StringIO()
     csv.writer(text, delimiter=delimiter, lineterminator="\n").writerow(cells)
     return text.getvalue()
-
-
-def _write(path: str | Path, rows: Sequence[str]) -> None:
-    with replacing(_file(path)) as file:
-        file.write("".join(rows).encode())

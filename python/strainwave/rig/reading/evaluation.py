@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
@@ -143,7 +142,7 @@ def budgets(found: Evaluation, analysis: LoopAnalysis) -> list[Budget]:
         Nothing where there is no rig, or the torque was measured otherwise.
     """
     loop = analysis.loop
-    steps = [step for step in found.steps if (step.position, step.unit) == (loop.position, loop.unit)]
+    steps = [step for step in found.steps if step.place == (loop.position, loop.unit)]
     if found.rig is None or not steps or any(step.torque is not None for step in steps):
         return []
     peak = max(steps, key=lambda step: step.mass_positive - step.mass_negative)
@@ -205,7 +204,10 @@ def evaluate_paths(paths: Sequence[Path], given: EvaluationOptions, progress: Pr
     if given.friction is not None:
         if given.gear_set is None:
             raise ValueError(f"friction {given.friction} needs a gear, whose law of friction is fitted to the table")
-        loops, read = _without_friction(measured, given.friction, given.gear_set.gear), [*read, given.friction]
+        table = recognise(given.friction, FileMapping(kind="friction")).recording
+        friction = friction_at_rest(table, given.gear_set.gear)
+        loops, read = [without_friction(loop, friction) for loop in measured], [*read, given.friction]
+    planned = [test.deviations for test in tests if test.deviations is not None]
     found = evaluate(
         loops,
         name=" and ".join(path.resolve().name for path in paths),
@@ -216,7 +218,7 @@ def evaluate_paths(paths: Sequence[Path], given: EvaluationOptions, progress: Pr
         steps=[step for test in tests for step in test.steps],
         angles=[angles for test in tests for angles in test.angles],
         remarks=[remark for test in tests for remark in test.remarks],
-        deviations=_deviations(tests),
+        deviations=[words for of_test in planned for words in of_test] if planned else None,
     )
     return found, read
 
@@ -237,7 +239,12 @@ def _read(
     read: list[Path] = []
     for path in paths:
         if path.is_dir():
-            _check_test(path, given.rig)
+            if not (path / "steps.csv").exists():
+                raise FileNotFoundError(
+                    f"{path} holds no steps.csv, in which each step of a test has its masses and photograph"
+                )
+            if given.rig is None and not (path / "rig.toml").exists():
+                raise FileNotFoundError(f"{path} holds no rig.toml; name the rig, as --rig couple-rig")
             tests.append(read_test(path, rig=given.rig, reference=given.reference, progress=progress))
             loops += tests[-1].loops
             read += [path / each for each in ("rig.toml", "steps.csv", PLAN) if (path / each).exists()]
@@ -247,22 +254,3 @@ def _read(
             loops.append(read_loop(path, columns=given.columns, units=given.units, position=place, unit=unit))
             read.append(path)
     return tests, loops, read
-
-
-def _check_test(folder: Path, rig: Rig | None) -> None:
-    """Refuse a folder that holds no test, with what it lacks."""
-    if not (folder / "steps.csv").exists():
-        raise FileNotFoundError(f"{folder} holds no steps.csv, in which each step of a test has its masses and photograph")
-    if rig is None and not (folder / "rig.toml").exists():
-        raise FileNotFoundError(f"{folder} holds no rig.toml; name the rig, as --rig couple-rig")
-
-
-def _deviations(tests: Sequence[TorsionTest]) -> list[str] | None:
-    """Return the deviations of tests from the plans in their folders; None if there is no plan."""
-    planned = [test.deviations for test in tests if test.deviations is not None]
-    return [words for of_test in planned for words in of_test] if planned else None
-
-
-def _without_friction(loops: Sequence[Loop], table: Path, gear: Gear) -> list[Loop]:
-    friction = friction_at_rest(recognise(table, FileMapping(kind="friction")).recording, gear)
-    return [without_friction(loop, friction) for loop in loops]

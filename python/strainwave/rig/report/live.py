@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.running.guide import HELP, Look
+from strainwave.rig.running.guide import HELP, Look, Point
 from strainwave.typeset import ARCSEC_PER_DEGREE, number
 
 if TYPE_CHECKING:
@@ -28,23 +28,6 @@ BRAILLE_BLANK = 0x2800  # code point of the empty sign; its dots are bits, two c
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 SIGNS = "⣿·┤└─●°−"  # what a terminal must be able to show; plain letters take their place otherwise
 ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # ends of axes, times a power of ten
-
-
-@dataclass(frozen=True)
-class Point:
-    """A photograph of a test as it is shown.
-
-    Attributes:
-        name: of the photograph, or of the step
-        torque: on the shaft [N.m], or None if it is not known
-        look: angle of the photograph
-        warnings: what makes it doubtful
-    """
-
-    name: str
-    torque: float | None
-    look: Look
-    warnings: tuple[str, ...] = ()
 
 
 def point_line(point: Point) -> str:
@@ -74,11 +57,6 @@ def plot_lines(points: Sequence[Point], width: int, letters: str) -> list[str]:
     return loop_lines(angle, np.array([point.torque for point in known], float), width, letters)
 
 
-def _typed() -> str:
-    """A line of the standard input."""
-    return input()
-
-
 @dataclass
 class Terminal:
     """Dialogue with the operator of the rig, over a terminal or a pipe.
@@ -95,13 +73,14 @@ class Terminal:
     steps: int
     change: Callable[[Step, Step | None], str]
     torque: Callable[[Step], float]
-    read: Callable[[], str] = _typed
+    read: Callable[[], str] = lambda: input()
     before: dict[int, Look] = field(default_factory=dict)
 
     def ask(self, step: Step, before: Step | None) -> str:
         """Show which masses to add and remove, and wait."""
-        if before is None or (step.position, step.unit) != (before.position, before.unit):
-            self._tell(f"\n{_place(step)}", "bold")
+        if before is None or step.place != before.place:
+            at = f"lexspline at {degrees(step.position):.6g}°"
+            self._tell(f"\nUnit {step.unit}, f{at}" if step.unit else f"\nF{at}", "bold")
             if before is None:
                 self._tell(HELP, "dim")
         self._tell(f"\nStep {step.number} of {self.steps}: {self.change(step, before)}", "bold cyan")
@@ -123,7 +102,7 @@ class Terminal:
     def done(self, steps: Sequence[Step], looks: Mapping[int, Look]) -> None:
         """The step that was made, and the loop so far."""
         looks = {**self.before, **looks}
-        here = [step for step in steps if (step.position, step.unit) == (steps[-1].position, steps[-1].unit)]
+        here = [step for step in steps if step.place == steps[-1].place]
         points = [Point(str(step.image), self.torque(step), looks[step.number]) for step in here if step.number in looks]
         self._tell(f"  {point_line(points[-1])}", "green")
         if self.console.is_terminal:
@@ -139,11 +118,6 @@ class Terminal:
             return self.read()
         except EOFError:  # nobody is there any more
             return "q"
-
-
-def _place(step: Step) -> str:
-    at = f"lexspline at {degrees(step.position):.6g}°"
-    return f"Unit {step.unit}, f{at}" if step.unit else f"F{at}"
 
 
 def live(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import degrees
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.report.figures import angle_unit, overlay_figure, quality_figure
 from strainwave.rig.report.tables import (
     OF_REGIMES,
+    SOURCES,
     TITLES,
     budget_parts,
     catalogue_rows,
@@ -29,12 +29,23 @@ from strainwave.rig.report.tables import (
     ratio_of,
     rig_rows,
     sentence,
-    source_rows,
     stated,
     step_rows,
     stiffness_table,
 )
 from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, fixed, number
+
+SECTIONS = {
+    "table": "Stiffness and hysteresis",
+    "loops": "Loops",
+    "comparison": "Positions and units compared",
+    "catalogue": "Comparison with the catalogue",
+    "uncertainty": "Uncertainty",
+    "photographs": "Photographs",
+    "steps": "Steps",
+    "setup": "Rig",
+    "sources": "Definitions and sources",
+}
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
@@ -54,6 +65,9 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
     >>> rig_report(evaluate([loop])).startswith("<!doctype html>")
     True
     """
+    sources = dict(SOURCES)
+    if (gear_set := found.gear_set) is not None:
+        sources["Gear"] = f"{gear_set.name}{f', {gear_set.maker}' if gear_set.maker else ''}"
     content = {
         "title": found.name if found.gear_set is None else found.gear_set.name,
         "setting": setting(found),
@@ -69,38 +83,24 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         "budgets": list(budget_parts(found)),
         "quality": quality_figure(found),
         "photographs": list(photographs(found.angles)),
-        "centres": centre_words(found.angles),
+        "centres": list(centre_words(found.angles)),
         "steps": list(step_rows(found)),
         "deviations": None if found.deviations is None else [sentence(each) for each in found.deviations],
-        "rows": [] if found.rig is None else rig_rows(found.rig),
+        "rows": [] if found.rig is None else list(rig_rows(found.rig)),
         "rig": found.rig,
-        "sources": list(source_rows(found)),
+        "sources": sources,
         "multiple": number(SOFT_COMPLIANCE_RATIO),
         "files": files,
     }
-    return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance, "strainwave.rig.report")
-
-
-def _sections(content: dict[str, Any]) -> dict[str, str]:
-    every = {
-        "table": "Stiffness and hysteresis",
-        "loops": "Loops",
-        "comparison": "Positions and units compared",
-        "catalogue": "Comparison with the catalogue",
-        "uncertainty": "Uncertainty",
-        "photographs": "Photographs",
-        "steps": "Steps",
-        "setup": "Rig",
-        "sources": "Definitions and sources",
-    }
     there = {
-        "comparison": content["comparisons"],
-        "catalogue": content["catalogue"],
-        "photographs": content["photographs"],
-        "steps": content["steps"],
-        "setup": content["rows"],
+        "comparison": "comparisons",
+        "catalogue": "catalogue",
+        "photographs": "photographs",
+        "steps": "steps",
+        "setup": "rows",
     }
-    return {anchor: name for anchor, name in every.items() if there.get(anchor, True)}
+    sections = {anchor: name for anchor, name in SECTIONS.items() if anchor not in there or content[there[anchor]]}
+    return render("rig.html.jinja", content | {"sections": sections}, provenance, "strainwave.rig.report")
 
 
 # ---- What was tested, and what came out -------------------------------------------------------------------------------
@@ -125,7 +125,8 @@ def setting(found: Evaluation) -> dict[str, str]:
         lost = sum(frame.markers is None for frame in frames)
         facts["Photographs"] = f"{len(frames)}, {f'{lost} without an angle' if lost else 'each with an angle'}"
     if times := [step.time for step in found.steps if step.time is not None]:
-        facts["Duration"] = _duration(max(times) - min(times))
+        minutes = round((max(times) - min(times)) / 60.0)
+        facts["Duration"] = f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
     temperatures = [value for loop in loops if loop.temperature is not None for value in loop.temperature.tolist()]
     if temperatures:
         facts["Temperature"] = (
@@ -136,11 +137,6 @@ def setting(found: Evaluation) -> dict[str, str]:
     if corrections := _with_labels(found, [each.loop.corrections for each in found.analyses]):
         facts["Corrections"] = " ".join(map(sentence, corrections))
     return facts
-
-
-def _duration(seconds: float) -> str:
-    minutes = round(seconds / 60.0)
-    return f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
 
 
 def _cards(found: Evaluation) -> Iterator[dict[str, str]]:

@@ -10,9 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from strainwave.rig.analysis.analysis import DEFINITIONS, Definition, LoopAnalysis, table
-from strainwave.rig.analysis.catalogue_check import CatalogueCheck
 from strainwave.rig.analysis.comparison import ComparedQuantity, Comparison
-from strainwave.rig.analysis.regimes import NAMES
+from strainwave.rig.analysis.regimes import NAMES, RegimeName
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.stiffness import SOFT_COMPLIANCE_RATIO, closure_of_secants, soft_parts, words_on_band
 from strainwave.rig.bench.setup import Camera, Rig, Value
@@ -118,16 +117,9 @@ def stiffness_table(found: Evaluation, definition: Definition) -> dict[str, Any]
 def document_rows() -> Iterator[list[str]]:
     """The torsional stiffness article's own table, how far it is from closed, and under which reading it is."""
     for position, (*slopes, width) in TABLE_2.items():
-        gap = degrees(closure_of_secants(slopes, PEAK_TORQUE))
-        parts = soft_parts(slopes, float(np.radians(width)), PEAK_TORQUE)
-        signed = f"{gap:+.2f}°".replace("-", "−")
-        yield [
-            f"{position}°",
-            *(fixed(each, 2) for each in slopes),
-            fixed(width, 1),
-            signed,
-            *(fixed(each, 3) for each in parts),
-        ]
+        gap = f"{degrees(closure_of_secants(slopes, PEAK_TORQUE)):+.2f}°".replace("-", "−")
+        parts = [fixed(each, 3) for each in soft_parts(slopes, float(np.radians(width)), PEAK_TORQUE)]
+        yield [f"{position}°", *(fixed(each, 2) for each in slopes), fixed(width, 1), gap, *parts]
 
 
 # ---- Loops -----------------------------------------------------------------------------------------------------------
@@ -137,6 +129,14 @@ def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
     analysis = found.analyses[place]
     ratio = ratio_of(found)
     low, high = analysis.peaks
+    reaches_band = analysis.loop.side == "input" and max(map(abs, analysis.peaks)) >= BAND[0]
+    names: tuple[RegimeName, ...] = ("negative_loading", "positive_loading") if reaches_band else ()
+    loading = [analysis.stiffness(name) for name in names]
+    own_remarks = [
+        remark
+        for remark in analysis.remarks  # the others hold for all of the test
+        if remark.startswith(OF_REGIMES) or any(remark not in each.remarks for each in found.analyses)
+    ]
     return {
         "label": found.labels[place],
         "span": f"{len(analysis.loop)} points from {fixed(low, 3)} to {fixed(high, 3)} N·m",
@@ -144,9 +144,16 @@ def loop_part(found: Evaluation, place: int) -> dict[str, Any]:
         "stiffness_figure": stiffness_figure(analysis, found.labels[place], f"stiffness-{place}"),
         "rows": list(_width_rows(analysis, ratio)),
         "ratio": ratio,
-        "soft": list(_soft_rows(analysis)),
-        "band": [sentence(words) for words in _band(analysis)],
-        "remarks": [sentence(remark) for remark in _own(found, analysis)],
+        "soft": [
+            (
+                spot.regime.replace("_", " "),
+                f"{fixed(spot.low, 3)} to {fixed(spot.high, 3)} N·m{'' if spot.bounded else ', where the regime ends'}",
+                f"{fixed(spot.multiple, 2)} (at least {fixed(spot.at_least, 2)})",
+            )
+            for spot in analysis.soft_spots
+        ],
+        "band": [sentence(words_on_band(each, *BAND)) for each in loading if each is not None],
+        "remarks": [sentence(remark) for remark in own_remarks],
     }
 
 
@@ -158,37 +165,27 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
         at_output = stated(found, ARCMIN_PER_RADIAN / ratio) if ratio else Stated("", "")
         return name, words, stated(found, scale), at_output, unit
 
-    wide = analysis.hysteresis
-    where = "" if wide is None else f", here at {number(round(wide.torque, 4), 3)} N·m"
-    yield angle(
-        "Hysteresis",
-        f"widest separation of the branches at equal torque, as the torsional stiffness article has it{where}",
-        None if wide is None else wide.width,
-    )
+    wide, rated = analysis.hysteresis, analysis.rated_torque
+    words = "widest separation of the branches at equal torque, as the torsional stiffness article has it"
+    if wide is None:
+        yield angle("Hysteresis", words, None)
+    else:
+        yield angle("Hysteresis", f"{words}, here at {number(round(wide.torque, 4), 3)} N·m", wide.width)
     yield angle("Width at zero torque", "separation of the branches after the peaks of this cycle", analysis.width_at_zero)
-    rated = analysis.rated_torque
-    yield angle(
-        "Hysteresis loss",
-        "separation at zero torque after rated torque, as catalogues have it"
-        + (
-            "; rated torque is not known"
-            if rated is None
-            else ""
-            if analysis.hysteresis_loss
-            else f"; rated torque, {number(rated, 4)} N·m, was not the peak"
-        ),
-        analysis.hysteresis_loss,
+    words = "separation at zero torque after rated torque, as catalogues have it"
+    level = "; rated torque is not known"
+    if rated is not None:
+        words += "" if analysis.hysteresis_loss else f"; rated torque, {number(rated, 4)} N·m, was not the peak"
+        level = f"; ±{number(0.04 * rated, 3)} N·m"
+    else:
+        words += level
+    yield angle("Hysteresis loss", words, analysis.hysteresis_loss)
+    words = (
+        "whole angle of the cycle between plus and minus 4 % of rated torque, as makers measure it"
+        if analysis.whole_angle
+        else "mean separation at plus and minus 4 % of rated torque in this larger cycle"
     )
-    yield angle(
-        "Lost motion",
-        (
-            "whole angle of the cycle between plus and minus 4 % of rated torque, as makers measure it"
-            if analysis.whole_angle
-            else "mean separation at plus and minus 4 % of rated torque in this larger cycle"
-        )
-        + ("; rated torque is not known" if rated is None else f"; ±{number(0.04 * rated, 3)} N·m"),
-        analysis.lost_motion,
-    )
+    yield angle("Lost motion", words + level, analysis.lost_motion)
     if analysis.torque_width is not None:
         words = f"widest separation at equal angle, here at {fixed(scale * analysis.torque_width[1], 2)}{unit}"
         yield "Width in torque", words, Stated(number(analysis.torque_width[0], 4), ""), Stated("", ""), "N·m"
@@ -196,25 +193,6 @@ def _width_rows(analysis: LoopAnalysis, ratio: float | None) -> Iterator[tuple[s
     yield angle("Closure error", "angle at the end of the cycle less that at its beginning, at equal torque", analysis.closure)
     if analysis.drift is not None:
         yield angle("Drift", "movement of the middle of the loop from cycle to cycle", analysis.drift)
-
-
-def _soft_rows(analysis: LoopAnalysis) -> Iterator[list[str]]:
-    for spot in analysis.soft_spots:
-        beyond = "" if spot.bounded else ", where the regime ends"
-        yield [
-            spot.regime.replace("_", " "),
-            f"{fixed(spot.low, 3)} to {fixed(spot.high, 3)} N·m{beyond}",
-            f"{fixed(spot.multiple, 2)} (at least {fixed(spot.at_least, 2)})",
-        ]
-
-
-def _band(analysis: LoopAnalysis) -> Iterator[str]:
-    """Yield words on the torsional stiffness article's soft spot, if the loop reaches that torque."""
-    if analysis.loop.side != "input" or max(map(abs, analysis.peaks)) < BAND[0]:
-        return
-    for name in ("negative_loading", "positive_loading"):
-        if (each := analysis.stiffness(name)) is not None:
-            yield words_on_band(each, *BAND)
 
 
 # ---- Comparison of loops, and with the catalogue ----------------------------------------------------------------------
@@ -240,23 +218,22 @@ def _compared(each: ComparedQuantity, found: Evaluation) -> dict[str, Any]:
         None: ("not known", "undecided"),
     }[each.significant]
     basis = "repeats" if not np.isnan(each.by_repeats) else "stated errors"
+    probability = "—"
+    if not np.isnan(each.probability):
+        probability = f"{'< 0.0001' if each.probability < 1e-4 else number(each.probability, 2)}, by {basis}"
+    spread = scale * each.spread
+
+    def to_spread(value: float) -> str:  # the third digit of the spread of the means, which separates them
+        return fixed(value, min(max(2 - floor(log10(spread)), 0), 6)) if spread > 0.0 else number(value, 4)
+
     return {
         "name": f"{each.name[0].upper()}{each.name[1:]} [{unit}]",
-        "means": [_to_spread(scale * mean, scale * each.spread) for mean in each.means],
+        "means": [to_spread(scale * mean) for mean in each.means],
         "spread": f"{number(scale * each.spread, 2)} ({number(100.0 * each.relative, 2)} %)",
-        "probability": "—" if np.isnan(each.probability) else f"{_probability(each.probability)}, by {basis}",
+        "probability": probability,
         "verdict": verdict,
         "word": word,
     }
-
-
-def _to_spread(value: float, spread: float) -> str:
-    """Return a mean to the third digit of the spread of the means, which separates them."""
-    return fixed(value, min(max(2 - floor(log10(spread)), 0), 6)) if spread > 0.0 else number(value, 4)
-
-
-def _probability(value: float) -> str:
-    return "< 0.0001" if value < 1e-4 else number(value, 2)
 
 
 def _in_print(unit: str, found: Evaluation) -> tuple[str, float]:
@@ -281,18 +258,14 @@ def catalogue_rows(found: Evaluation) -> Iterator[dict[str, Any]]:
                 "measured": stated(check.measured, scale),
                 "stated": number(scale * check.stated, 4)
                 + ("" if check.spread is None else f" ± {number(100.0 * check.spread, 2)} %"),
-                "share": _share(check),
+                "share": "—"
+                if check.measured is None or not check.stated
+                else f"{number(100.0 * check.measured.value / check.stated, 3)} %",
                 "unit": unit,
                 "verdict": verdict,
                 "word": word,
                 "why": check.why.replace("N.m", "N·m"),
             }
-
-
-def _share(check: CatalogueCheck) -> str:
-    if check.measured is None or check.stated == 0.0:
-        return "—"
-    return f"{number(100.0 * check.measured.value / check.stated, 3)} %"
 
 
 # ---- Uncertainty and sources -----------------------------------------------------------------------------------------
@@ -337,19 +310,6 @@ SOURCES = {
 }
 
 
-def source_rows(found: Evaluation) -> Iterator[tuple[str, str]]:
-    yield from SOURCES.items()
-    if found.gear_set is not None:
-        yield "Gear", f"{found.gear_set.name}{f', {found.gear_set.maker}' if found.gear_set.maker else ''}"
-
-
-def _own(found: Evaluation, analysis: LoopAnalysis) -> Iterator[str]:
-    """Remarks on a loop that do not hold for all of the test."""
-    for remark in analysis.remarks:
-        if remark.startswith(OF_REGIMES) or any(remark not in each.remarks for each in found.analyses):
-            yield remark
-
-
 class RigRow(NamedTuple):
     """A number of the rig, ready to print."""
 
@@ -359,9 +319,26 @@ class RigRow(NamedTuple):
     source: str
 
 
-def rig_rows(rig: Rig) -> list[RigRow]:
-    """Every number of a rig with its standard deviation and its source, in the units of the workshop."""
-    return [*_loading(rig), *_masses(rig), *_target(rig), *_camera(rig.camera)]
+def rig_rows(rig: Rig) -> Iterator[RigRow]:
+    """Yield every number of a rig with its standard deviation and its source, in the units of the workshop."""
+    yield RigRow("Loaded shaft", rig.side, "", "the other shaft and the circular spline are held")
+    yield _row("Radius of the disk", rig.disk_radius, 1e3, "mm")
+    yield _row("Gravity", rig.gravity, 1.0, "m/s²")
+    if rig.cord == "wound":
+        yield RigRow("Cords", "wound on the rim", "", "the arm is the disk's radius at every angle")
+    else:
+        arm = "the arm is r cos(angle − angle at which the cord is tangent)"
+        yield RigRow("Cords", "from a fixed point of the rim", "", arm)
+        yield _row("Angle at which the cord is tangent", rig.cord_tangent, degrees(1.0), "°")
+    yield _row("Friction of the pulleys, whatever the load", rig.pulley_torque, 1e3, "mN·m at the disk")
+    yield _row("Friction of the pulleys, share of the torque", rig.pulley_share, 1e2, "%")
+    yield _row("Compliance of coupling and frame", rig.compliance, 1e3, "mrad/(N·m)")
+    for masses in rig.masses:
+        yield _row(f"{masses.count} masses of", Value(masses.mass, masses.sigma, masses.source), 1e3, "g each")
+    for name, length in (("Diameter of the markers", rig.markers_diameter), ("Distance of the markers", rig.markers_distance)):
+        if length is not None:
+            yield _row(name, length, 1e3, "mm")
+    yield from _camera(rig.camera)
 
 
 def _row(name: str, given: Value, scale: float, unit: str) -> RigRow:
@@ -369,51 +346,19 @@ def _row(name: str, given: Value, scale: float, unit: str) -> RigRow:
     return RigRow(name, value, unit, given.source)
 
 
-def _loading(rig: Rig) -> Iterator[RigRow]:
-    yield RigRow("Loaded shaft", rig.side, "", "the other shaft and the circular spline are held")
-    yield _row("Radius of the disk", rig.disk_radius, 1e3, "mm")
-    yield _row("Gravity", rig.gravity, 1.0, "m/s²")
-    if rig.cord == "wound":
-        yield RigRow("Cords", "wound on the rim", "", "the arm is the disk's radius at every angle")
-    else:
-        yield RigRow(
-            "Cords", "from a fixed point of the rim", "", "the arm is r cos(angle − angle at which the cord is tangent)"
-        )
-        yield _row("Angle at which the cord is tangent", rig.cord_tangent, degrees(1.0), "°")
-    yield _row("Friction of the pulleys, whatever the load", rig.pulley_torque, 1e3, "mN·m at the disk")
-    yield _row("Friction of the pulleys, share of the torque", rig.pulley_share, 1e2, "%")
-    yield _row("Compliance of coupling and frame", rig.compliance, 1e3, "mrad/(N·m)")
-
-
-def _masses(rig: Rig) -> Iterator[RigRow]:
-    for masses in rig.masses:
-        yield _row(f"{masses.count} masses of", Value(masses.mass, masses.sigma, masses.source), 1e3, "g each")
-
-
-def _target(rig: Rig) -> Iterator[RigRow]:
-    for name, given in (("Diameter of the markers", rig.markers_diameter), ("Distance of the markers", rig.markers_distance)):
-        if given is not None:
-            yield _row(name, given, 1e3, "mm")
-
-
 def _camera(camera: Camera) -> Iterator[RigRow]:
     def source(*keys: str) -> str:
         return "; ".join(dict.fromkeys(camera.sources[key] for key in keys if key in camera.sources))
 
     if camera == Camera(sources=camera.sources):
-        yield RigRow(
-            "Camera",
-            "not calibrated",
-            "",
-            "taken to look straight at the target, through a lens without distortion, at square pixels",
-        )
+        words = "taken to look straight at the target, through a lens without distortion, at square pixels"
+        yield RigRow("Camera", "not calibrated", "", words)
         return
     yield RigRow("Width of a pixel over its height", number(camera.aspect), "", source("aspect"))
     yield RigRow("Tilt of the camera", number(degrees(camera.tilt), 4), "°", source("tilt"))
     if camera.tilt:
-        yield RigRow(
-            "Direction in which the target recedes", number(degrees(camera.tilt_direction), 4), "°", source("tilt_direction")
-        )
+        direction = number(degrees(camera.tilt_direction), 4)
+        yield RigRow("Direction in which the target recedes", direction, "°", source("tilt_direction"))
     if camera.distance is not None:
         yield RigRow("Distance of the target", number(camera.distance, 5), "px", source("distance"))
     if camera.centre is not None:
@@ -449,21 +394,15 @@ def photographs(angles: Sequence[Angles]) -> Iterator[dict[str, str]]:
             yield {"name": frame.name, **row, "remark": remark, "sha256": frame.sha256}
 
 
-def centre_words(angles: Sequence[Angles]) -> list[str]:
-    """About which point the disk turned, and whether the couple was pure."""
-    words = []
+def centre_words(angles: Sequence[Angles]) -> Iterator[str]:
+    """Yield the point about which the disk turned, for each position and unit."""
     for each in angles:
-        if each.centre is None:
-            words.append(
-                f"With {each.reference} at 0: the turn is too small to determine the point about which the disk turned."
-            )
-        else:
+        words = "the turn is too small to determine the point about which the disk turned."
+        if each.centre is not None:
             x, y, rms = each.centre
-            words.append(
-                f"With {each.reference} at 0: the disk turned about ({fixed(x, 1)}, {fixed(y, 1)}) px; "
-                f"the markers keep to circles about it within {fixed(rms, 3)} px rms."
-            )
-    return words
+            words = f"the disk turned about ({fixed(x, 1)}, {fixed(y, 1)}) px; "
+            words += f"the markers keep to circles about it within {fixed(rms, 3)} px rms."
+        yield f"With {each.reference} at 0: {words}"
 
 
 # ---- Steps -----------------------------------------------------------------------------------------------------------

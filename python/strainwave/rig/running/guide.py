@@ -39,6 +39,22 @@ class Look(NamedTuple):
     fault: str = ""
 
 
+class Point(NamedTuple):
+    """A photograph of a test that is being run.
+
+    Attributes:
+        name: of the photograph, or of the step
+        torque: on the shaft [N.m]; None if neither the record nor a plan contains it
+        look: its angle from the first photograph of its position and unit
+        warnings: what makes it doubtful
+    """
+
+    name: str
+    torque: float | None
+    look: Look
+    warnings: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class Settling:
     """Condition for the shaft to count as at rest.
@@ -159,14 +175,6 @@ def settle(
         pause(settling.interval)
 
 
-def began(steps: Sequence[Step], folder: Path) -> float:
-    """Return the time at which a test began [s], on the clock of its photographs; now if it has not begun."""
-    for step in steps:
-        if step.image is not None and step.time is not None and (folder / step.image).exists():
-            return (folder / step.image).stat().st_mtime - step.time
-    return time.time()
-
-
 class Talk(Protocol):
     """Speaks with whoever stands at the rig."""
 
@@ -213,7 +221,10 @@ def conduct(
         ValueError: what was done before does not belong to this plan
     """
     steps = done_before(plan, folder)
-    start, looks = began(steps, folder), dict[int, Look]()
+    looks = dict[int, Look]()
+    timed = [step for step in steps if step.image is not None and step.time is not None and (folder / step.image).exists()]
+    # On the clock of the photographs.
+    start = (folder / str(timed[0].image)).stat().st_mtime - (timed[0].time or 0.0) if timed else time.time()
     for planned in plan[len(steps) :]:
         load(planned.number)
         answered = _answer(talk, talk.ask(planned, steps[-1] if steps else None))
@@ -223,7 +234,10 @@ def conduct(
                 return steps
             image = f"{planned.number:04}{rest.picture.suffix}"
             os.replace(rest.picture, folder / image)
-        steps.append(_made(planned, answered, image, time.time() - start))
+        step = replace(planned, image=image, time=round(time.time() - start, 1), temperature=answered.temperature)
+        if answered.masses is not None:
+            step = replace(step, mass_positive=answered.masses[0], mass_negative=answered.masses[1])
+        steps.append(step)
         append_step(steps[-1], folder)
         looks[planned.number] = rest.look
         talk.done(steps, looks)
@@ -240,7 +254,7 @@ def done_before(plan: Sequence[Step], folder: Path) -> list[Step]:
         return []
     steps = read_steps(folder)
     for step, planned in zip(steps, plan, strict=False):
-        if (step.number, step.position, step.unit) != (planned.number, planned.position, planned.unit):
+        if (step.number, step.place) != (planned.number, planned.place):
             raise ValueError(f"{folder / FILE}: step {step.number} does not belong to the plan; give another folder as --out")
     if len(steps) > len(plan):
         raise ValueError(f"{folder / FILE} holds {len(steps)} steps, the plan {len(plan)}; give another folder as --out")
@@ -276,13 +290,6 @@ def _at_rest(
             return rest, answered
         answered = replace(answered, stop=again.stop)
     return Rest(None, Look(np.nan, np.nan), False, np.nan), answered
-
-
-def _made(planned: Step, answered: Reply, image: str, since: float) -> Step:
-    step = replace(planned, image=image, time=round(since, 1), temperature=answered.temperature)
-    if answered.masses is not None:
-        step = replace(step, mass_positive=answered.masses[0], mass_negative=answered.masses[1])
-    return step
 
 
 class PictureSource(Protocol):

@@ -11,9 +11,8 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import degrees
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -22,7 +21,7 @@ from strainwave import arguments, typeset
 from strainwave.files.gear_file import at
 from strainwave.presentation import Presented, Row, Statement, counted
 from strainwave.rig.bench.setup import Rig
-from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.steps import Step, by_place, place_words
 
 Pans = Literal["equal", "unequal"]
 SIDES = ("positive", "negative")
@@ -164,29 +163,6 @@ def reachable(rig: Rig, torque: float, pans: Pans = "equal") -> tuple[float, flo
     return unit * math.floor(count + _MASS_TOLERANCE), unit * math.ceil(count - _MASS_TOLERANCE)
 
 
-def task(rig: Rig, before: Step | None, step: Step, pans: Pans = "equal") -> str:
-    """Return in words which masses to add and remove between two steps outside a plan; the largest masses come first.
-
-    Args:
-        rig: its masses
-        before: what lies on the pans; nothing if None
-        step: what is to lie there
-        pans: as in `plan`
-
-    Raises:
-        ValueError: the masses of the rig do not make a total
-
-    >>> from strainwave.rig import load, Step
-    >>> task(load("couple-rig"), Step(1, mass_positive=0.35), Step(2, mass_positive=0.3))
-    'positive pans: take 25 g off each'
-    """
-    changes = []
-    for side in SIDES:
-        before_it, after = (_composed(rig, pans, getattr(each, f"mass_{side}") if each else 0.0) for each in (before, step))
-        changes.append(_change(side, before_it, after))
-    return "; ".join(filter(None, changes)) or "leave all as it is"
-
-
 # Masses
 
 
@@ -283,17 +259,13 @@ def _stages(
         for load in loads:
             number += 1
             masses = (max(load, 0) * quantum, max(-load, 0) * quantum)
-            words = _first(position, unit, place) if before is None else ""
-            words += _changes(stacks, before or 0, load)
+            words = _changes(stacks, before or 0, load)
+            if before is None:
+                clear, of = "take all masses off; " if place else "", f"specimen {unit}, " if unit else ""
+                words = f"{clear}{of}flexspline at {math.degrees(position):g} degrees; {words}"
             step = Step(number, round(masses[0], 12), round(masses[1], 12), position=position, unit=unit)
             yield PlannedStep(step, _stage(before, load), load * quantum * _torque_of_mass(rig), words)
             before = load
-
-
-def _first(position: float, unit: str, place: int) -> str:
-    of = f"specimen {unit}, " if unit else ""
-    clear = "take all masses off; " if place else ""
-    return f"{clear}{of}flexspline at {math.degrees(position):g} degrees; "
 
 
 def _stage(before: int | None, load: int) -> str:
@@ -348,14 +320,10 @@ def _remarks(
         force = quantum * rig.gravity.value
         differ = f"The pans of a pair differ by up to {_grams(quantum)}"
         yield f"{differ}: a side force of up to {force:.3g} N on the shaft, no pure couple."
-    if any(_is_exchange(before, after) for before, after in pairwise(stacks.values())):
+    if any(one - other and other - one for pair in pairwise(stacks.values()) for one, other in zip(*pair, strict=True)):
         yield "There are too few small masses: some steps exchange masses, and the shaft turns back and forth meanwhile."
     if cycles == 1:
         yield "A first cycle depends on what the gear went through before; plan two cycles to see the loop that repeats."
-
-
-def _is_exchange(before: Laid, after: Laid) -> bool:
-    return any(one - other and other - one for one, other in zip(before, after, strict=True))
 
 
 @dataclass(frozen=True)
@@ -399,27 +367,18 @@ def check(steps: Sequence[Step], plan: Plan | Sequence[Step]) -> list[Deviation]
     ['step 4 of the plan is skipped: 200 g on the positive pans, 0 g on the negative ones']
     """
     planned = plan.steps if isinstance(plan, Plan) else plan
-    of_plan, of_record = _places(planned), _places(steps)
+    of_plan, of_record = (
+        by_place([replace(step, position=round(step.position, 9)) for step in each]) for each in (planned, steps)
+    )
     findings: list[Deviation] = []
     for place in dict.fromkeys((*of_plan, *of_record)):
         if place not in of_record:
-            findings.append(Deviation("not made", 0, f"{_called(place)}: planned, but not made"))
+            findings.append(Deviation("not made", 0, f"{place_words(place)}: planned, but not made"))
         elif place not in of_plan:
-            findings.append(Deviation("unplanned", of_record[place][0].number, f"{_called(place)}: made, but not planned"))
+            findings.append(Deviation("unplanned", of_record[place][0].number, f"{place_words(place)}: made, but not planned"))
         else:
             findings += _of_place(of_plan[place], of_record[place])
     return findings
-
-
-def _places(steps: Sequence[Step]) -> dict[tuple[float, str], list[Step]]:
-    found: dict[tuple[float, str], list[Step]] = {}
-    for step in steps:
-        found.setdefault((round(step.position, 9), step.unit), []).append(step)
-    return found
-
-
-def _called(place: tuple[float, str]) -> str:
-    return f"{f'unit {place[1]}, ' if place[1] else ''}flexspline at {degrees(place[0]):.6g} degrees"
 
 
 def _masses(step: Step) -> Masses:

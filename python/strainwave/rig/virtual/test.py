@@ -147,13 +147,21 @@ def simulate_test(
     ]
     weighed = _weighed(recorded, rig, np.random.default_rng([seed, 0])) if mass_errors else recorded
     gears, loadings = _loaded(gear, rig, weighed, {"wait": wait, "settling": settling, "virgin": virgin})
-    test = _truth(folder, recorded, weighed, loadings)
+    if not loadings:
+        raise ValueError("steps: a test needs one step or more")
+    names = ("seen", "applied", "shaft", "elastic", "twist")
+    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in names]
+    columns += [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
+    test = VirtualTest(folder, tuple(recorded), *columns)
     names = ["rig.toml", "steps.csv", "truth.json", *(f"truth-{number}.toml" for number in range(1, len(gears) + 1))]
     with making(folder):
-        _check_empty(folder)
+        for name in ("rig.toml", "steps.csv", "truth.json"):
+            if (folder / name).exists():
+                raise ValueError(f"{folder} holds a test already ({name}); give another folder")
         with _whole(folder, [*names, *(str(step.image) for step in recorded)]):
             _write(test, recorded, gears, scene, seed, faults, stated or rig, progress)
-    return _without_skipped(test, faults)
+    kept = [k for k, step in enumerate(recorded) if faults.get(step.number) != "skipped"]
+    return VirtualTest(folder, tuple(recorded[k] for k in kept), *(column[kept] for column in columns))
 
 
 @contextmanager
@@ -183,12 +191,21 @@ def _write(
     for number, each in enumerate(gears, 1):
         save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
     _write_truth(test, scene, seed, faults)
+    angles = test.angle.tolist()
+    for k, step in enumerate(recorded):
+        if faults.get(step.number) == "swapped":
+            angles[k], angles[k + 1] = angles[k + 1], angles[k]
+    scenes = {
+        "blurred": replace(scene, blur=FAULT_BLUR),
+        "over-exposed": replace(scene, exposure=FAULT_EXPOSURE * scene.exposure),
+        "marker missing": replace(scene, markers=(scene.markers[0], scene.ground)),
+    }
     with by_count(progress, "drawing pictures", len(recorded)) as report:
-        for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
-            fault = faults.get(step.number)
+        for k, (step, angle) in enumerate(zip(recorded, angles, strict=True), 1):
+            fault = faults.get(step.number, "")
             if fault != "skipped":
                 noise = np.random.default_rng([seed, step.number])
-                _write_picture(render(_faulty(scene, fault), float(test.angle[shown]), noise), folder / str(step.image))
+                _write_picture(render(scenes.get(fault, scene), angle, noise), folder / str(step.image))
                 append_step(step, folder)
             if report is not None:
                 report(k)
@@ -203,12 +220,6 @@ def _checked(faults: Mapping[int, Fault], steps: Sequence[Step]) -> dict[int, Fa
         if fault == "swapped" and number == numbers[-1]:
             raise ValueError(f"faults[{number}]: the last step has no next one to be swapped with")
     return dict(faults)
-
-
-def _check_empty(folder: Path) -> None:
-    for name in ("rig.toml", "steps.csv", "truth.json"):
-        if (folder / name).exists():
-            raise ValueError(f"{folder} holds a test already ({name}); give another folder")
 
 
 # What is true
@@ -244,26 +255,11 @@ def _loaded(
 ) -> tuple[list[Gear], list[Loading]]:
     """Return the gear and its loading for each position and unit in turn."""
     gears, loadings = [], []
-    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+    for _, group in groupby(steps, key=lambda step: step.place):
         own = list(group)
         gears.append(gear if isinstance(gear, Gear) else gear(own[0]))
         loadings.append(load_by_steps(gears[-1], rig, own, **given))
     return gears, loadings
-
-
-def _truth(folder: Path, recorded: Sequence[Step], weighed: Sequence[Step], loadings: Sequence[Loading]) -> VirtualTest:
-    if not loadings:
-        raise ValueError("steps: a test needs one step or more")
-    names = ("seen", "applied", "shaft", "elastic", "twist")
-    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in names]
-    masses = [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
-    return VirtualTest(folder, tuple(recorded), *columns, *masses)
-
-
-def _without_skipped(test: VirtualTest, faults: Mapping[int, Fault]) -> VirtualTest:
-    kept = [k for k, step in enumerate(test.steps) if faults.get(step.number) != "skipped"]
-    columns = [getattr(test, name)[kept] for name in COLUMNS]
-    return VirtualTest(test.folder, tuple(test.steps[k] for k in kept), *columns)
 
 
 def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int, Fault]) -> None:
@@ -283,25 +279,6 @@ def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int
 
 
 # Photographs
-
-
-def _shown(steps: Sequence[Step], faults: Mapping[int, Fault]) -> list[int]:
-    """Return the index of the state that each photograph shows."""
-    shown = list(range(len(steps)))
-    for k, step in enumerate(steps):
-        if faults.get(step.number) == "swapped":
-            shown[k], shown[k + 1] = shown[k + 1], shown[k]
-    return shown
-
-
-def _faulty(scene: Scene, fault: Fault | None) -> Scene:
-    if fault == "blurred":
-        return replace(scene, blur=FAULT_BLUR)
-    if fault == "over-exposed":
-        return replace(scene, exposure=FAULT_EXPOSURE * scene.exposure)
-    if fault == "marker missing":
-        return replace(scene, markers=(scene.markers[0], scene.ground))
-    return scene
 
 
 def _write_picture(picture: NDArray[Any], path: Path) -> None:
@@ -359,8 +336,5 @@ def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gea
     >>> source.angles.round(4).tolist()
     [0.0, -0.0109]
     """
-    angles = []
-    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
-        own = list(group)
-        angles.append(load_by_steps(gear if isinstance(gear, Gear) else gear(own[0]), rig, own).angle)
-    return Virtual(usual_scene(rig), np.concatenate(angles), np.random.default_rng(seed))
+    angles = np.concatenate([loading.angle for loading in _loaded(gear, rig, steps, {})[1]])
+    return Virtual(usual_scene(rig), angles, np.random.default_rng(seed))

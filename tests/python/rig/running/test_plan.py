@@ -14,7 +14,7 @@ from hypothesis import assume, given, strategies as st
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.running.plan import Plan, check, plan, reachable, task
+from strainwave.rig.running.plan import Plan, check, plan, reachable
 
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81), masses=(Masses(0.025, 16), Masses(0.1, 9)))
 PLAN = plan(load("couple-rig"), positions=[0.0])
@@ -103,16 +103,6 @@ def test_a_plan_that_cannot_be_is_refused(peak: float, arguments: dict[str, obje
 def test_a_rig_without_masses_has_no_plan() -> None:
     with pytest.raises(ValueError, match=re.escape("bench has no masses; write [[masses]] with mass and count in its file")):
         plan(Rig("bench", "input", Value(0.1)))
-
-
-def test_the_task_between_any_two_steps() -> None:
-    assert task(RIG, None, Step(1, mass_positive=0.45)) == "positive pans: lay 2 x 100 g and 25 g on each"
-    assert task(RIG, Step(1, mass_positive=0.05), Step(2, mass_negative=0.05)) == (
-        "positive pans: take 25 g off each; negative pans: lay 25 g on each"
-    )
-    assert task(RIG, Step(1, 0.2), Step(2, 0.2)) == "leave all as it is"
-    with pytest.raises(ValueError, match=re.escape("do not make 367 g on a pair of pans that carry the same")):
-        task(RIG, None, Step(1, mass_positive=0.367))
 
 
 # Laws
