@@ -11,8 +11,8 @@ import numpy as np
 from strainwave.report.rig_figures import Pictures
 from strainwave.rig.bench.setup import Camera, Rig, Value
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.rig.vision.follow import Angles
-from strainwave.rig.vision.frame import Frame
+from strainwave.rig.vision.angle import Angles
+from strainwave.rig.vision.marker import Frame
 from strainwave.typeset import ARCSEC_PER_DEGREE, ZERO_CELSIUS, fixed, number, uncertain
 
 

@@ -15,13 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-
 from strainwave.presentation import Statement
 from strainwave.rig.bench.setup import Rig
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.torque.torque import Torque
+from strainwave.rig.bench.torque import Torque
+from strainwave.rig.vision.angle import Angles
 from strainwave.rig.vision.camera import changes_nothing, flat
-from strainwave.rig.vision.follow import Angles
 from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]

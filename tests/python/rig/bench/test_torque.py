@@ -1,4 +1,4 @@
-"""Torque from masses, arms, pulleys; compliance from a blank run; all against closed forms."""
+"""Torque of masses on pans, and the budgets of uncertainty."""
 
 from __future__ import annotations
 
@@ -14,14 +14,39 @@ from numpy.typing import NDArray
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Cord, Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
+from strainwave.rig.bench.torque import (
+    Budget,
+    Contribution,
+    angle_budget,
+    arm,
+    blank,
+    mass_sigma,
+    stiffness_budget,
+    torque_budget,
+    torque_of,
+    without_compliance,
+)
 from strainwave.rig.loop import Loop
-from strainwave.rig.torque.torque import arm, blank, mass_sigma, torque_of, without_compliance
 from strainwave.rig.virtual.loading import load_by_steps
 
 from tests.support.samples import sample
 
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81))
 STEPS_OF_CYCLE = [0.05 * abs(n) - 0.35 for n in range(14, -15, -1)]
+Array = NDArray[np.float64]
+DRAWS = 20_000
+WEIGHED_RIG = Rig(
+    "bench",
+    "input",
+    Value(0.1, 2e-4),
+    gravity=Value(9.81, 0.02),
+    masses=(Masses(0.025, 16, 5e-5),),
+    cord="fixed point",
+    cord_tangent=Value(math.radians(-40.0), math.radians(0.3)),
+    pulley_share=Value(0.0, 0.002),
+    compliance=Value(0.012, 8e-4),
+)
+STEPS = [Step(n, mass_positive=0.025 * n) for n in range(1, 13)]
 
 
 def loaded(masses: list[float]) -> list[Step]:
@@ -282,3 +307,76 @@ def test_the_stated_uncertainty_covers_width_and_stiffness() -> None:
         of_soft = soft[1] * math.hypot(seen.scale, soft[1] * said.compliance.sigma)
         deviations.append([(widths[0] - widths[1]) / of_width, (soft[0] - soft[1]) / of_soft])
     assert np.std(deviations, axis=0) == pytest.approx(1.0, abs=4.0 / math.sqrt(2.0 * len(deviations)))
+
+
+def drawn(random: np.random.Generator, number: Value) -> Array:
+    return number.value + number.sigma * random.standard_normal(DRAWS)
+
+
+def drawn_torques(random: np.random.Generator, angle: float) -> Array:
+    """Torques of the steps, each row with another rig that is as the file of the rig says, shape (draws, steps)."""
+    radius, gravity, tangent, share = (
+        drawn(random, each)
+        for each in (WEIGHED_RIG.disk_radius, WEIGHED_RIG.gravity, WEIGHED_RIG.cord_tangent, WEIGHED_RIG.pulley_share)
+    )
+    counts = np.arange(1, len(STEPS) + 1)
+    masses = 0.025 * counts + 5e-5 * np.sqrt(counts) * random.standard_normal((DRAWS, len(STEPS)))
+    return masses * (gravity * radius * np.cos(angle - tangent) * (1.0 - share))[:, None]
+
+
+def assert_as_drawn(budget: Budget, values: Array) -> None:
+    """The budget's deviation is that of the draws, whose own one is known to 1/sqrt(2 n)."""
+    assert budget.sigma == pytest.approx(values.std(), rel=4.0 / math.sqrt(2.0 * DRAWS))
+
+
+def test_the_budget_of_a_torque_is_what_draws_of_its_numbers_show() -> None:
+    angle = math.radians(15.0)
+    torques = drawn_torques(np.random.default_rng(1), angle)
+    for row in (0, 11):
+        budget = torque_budget(WEIGHED_RIG, STEPS[row], angle)
+        assert_as_drawn(budget, torques[:, row])
+        assert budget.value == pytest.approx(0.025 * (row + 1) * 0.981 * math.cos(math.radians(55.0)), rel=1e-12)
+
+
+def test_the_budget_of_an_angle_is_what_draws_of_its_numbers_show() -> None:
+    random = np.random.default_rng(2)
+    torque = drawn_torques(random, 0.0)[:, -1]
+    seen = 0.1 * (1.0 + 1e-3 * random.standard_normal(DRAWS)) + 2e-4 * random.standard_normal(DRAWS)
+    budget = angle_budget(WEIGHED_RIG, 0.1, 2e-4, torque_budget(WEIGHED_RIG, STEPS[-1]), 1e-3)
+    assert_as_drawn(budget, seen - drawn(random, WEIGHED_RIG.compliance) * torque)
+
+
+def test_the_budget_of_a_stiffness_is_what_regressions_over_draws_show() -> None:
+    """The gear has 4.5 N.m/rad; each row is evaluated with the rig's file, while the torques are those of another rig."""
+    random, angle, stiffness, sigma = np.random.default_rng(3), math.radians(-10.0), 4.5, 3e-4
+    true = drawn_torques(random, angle)
+    seen = true * (1.0 / stiffness + drawn(random, WEIGHED_RIG.compliance))[:, None] + sigma * random.standard_normal(
+        true.shape
+    )
+    seen = seen * (1.0 + 2e-3 * random.standard_normal(DRAWS))[:, None]
+    nominal = np.array([torque_budget(WEIGHED_RIG, step, angle).value for step in STEPS])
+    own = seen - WEIGHED_RIG.compliance.value * nominal
+    centred = nominal - nominal.mean()
+    found = 1.0 / (own @ centred / (centred @ centred))
+    budget = stiffness_budget(WEIGHED_RIG, stiffness, STEPS, angle, sigma, 2e-3)
+    assert_as_drawn(budget, found)
+
+
+def test_contributions_add_up_as_squares_and_nothing_is_listed_that_is_nothing() -> None:
+    parts = [Contribution("a", 3.0, "random"), Contribution("b", 0.0, "common"), Contribution("c", 4.0, "common")]
+    budget = Budget.of("angle", 0.0, "rad", parts)
+    assert [each.name for each in budget.contributions] == ["c", "a"]
+    assert (budget.sigma, budget.of_kind("random"), budget.of_kind("by direction")) == (5.0, 3.0, 0.0)
+    assert sum(map(budget.share, budget.contributions)) == 1.0
+
+
+@pytest.mark.parametrize("steps", [[], STEPS[:1], [Step(1, 0.1), Step(2, 0.1)]])
+def test_one_torque_tells_no_stiffness(steps: list[Step]) -> None:
+    with pytest.raises(ValueError, match="steps: the stiffness of a regime needs two steps or more"):
+        stiffness_budget(WEIGHED_RIG, 4.5, steps)
+
+
+@pytest.mark.parametrize(("angle", "sigma"), [(math.nan, 1e-4), (0.1, -1e-4)])
+def test_an_angle_is_finite_and_its_error_is_not_negative(angle: float, sigma: float) -> None:
+    with pytest.raises(ValueError, match=r"angle = nan|sigma = -0\.0001"):
+        angle_budget(WEIGHED_RIG, angle, sigma, torque_budget(WEIGHED_RIG, STEPS[-1]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.rig.influence.cycle import Factors, cycle, cycle_to, scaled
+from strainwave.rig.analysis.cycle import Factors, cycle, cycle_to, scaled
 from strainwave.rig.virtual.printed import PEAK_TORQUE, printed_gear
 
 K, ELEMENT, SLIP = 800.0, 400.0, 2.0  # N.m/rad, N.m/rad, N.m

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given, strategies as st
-from strainwave.rig.analysis.line import fit_line
+from strainwave.rig.analysis.lines import fit_line
 
 # Pearson's data with York's weights, and the line that York et al. (2004), Table II, find.
 X = np.array([0.0, 0.9, 1.8, 2.6, 3.3, 4.4, 5.2, 6.1, 6.5, 7.4])

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import append_step, read_steps, write_steps
+from strainwave.rig.bench.steps import Step, append_step, read_steps, write_steps
 
 TEXT = """number,mass_positive [g],mass_negative [g],image,time [min],temperature [degC],position [deg],unit
 1,250,0,001.png,0,21.5,60,A

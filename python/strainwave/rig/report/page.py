@@ -4,32 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import degrees
-from typing import Any
 
 import numpy as np
 
-from strainwave.report import rig_plates, rig_setup
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
-from strainwave.report.rig_numbers import sentence, stated
-from strainwave.report.rig_tables import (
-    OF_REGIMES,
-    TITLES,
-    budget_parts,
-    catalogue_rows,
-    comparison_part,
-    document_rows,
-    loop_part,
-    ratio_of,
-    source_rows,
-    stiffness_table,
-)
 from strainwave.rig.analysis.analysis import table
 from strainwave.rig.analysis.lost_motion import LOST_MOTION
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import SOFT_COMPLIANCE_RATIO
+from strainwave.rig.analysis.stiffness import SOFT_COMPLIANCE_RATIO
 from strainwave.rig.reading.evaluation import Evaluation
+from strainwave.rig.report.figures import angle_unit, overlay_figure, quality_figure
+from strainwave.rig.report.tables import (
+    OF_REGIMES,
+    SOURCES,
+    TITLES,
+    budget_parts,
+    catalogue_rows,
+    centre_words,
+    comparison_part,
+    document_rows,
+    loop_part,
+    photographs,
+    ratio_of,
+    rig_rows,
+    sentence,
+    stated,
+    step_rows,
+    stiffness_table,
+)
 from strainwave.typeset import ARCMIN_PER_RADIAN, ZERO_CELSIUS, fixed, number
+
+SECTIONS = {
+    "table": "Stiffness and hysteresis",
+    "loops": "Loops",
+    "comparison": "Positions and units compared",
+    "catalogue": "Comparison with the catalogue",
+    "uncertainty": "Uncertainty",
+    "photographs": "Photographs",
+    "steps": "Steps",
+    "setup": "Rig",
+    "sources": "Definitions and sources",
+}
 
 
 def rig_report(found: Evaluation, provenance: Provenance | None = None, files: Sequence[str] = ()) -> str:
@@ -49,6 +65,9 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
     >>> rig_report(evaluate([loop])).startswith("<!doctype html>")
     True
     """
+    sources = dict(SOURCES)
+    if (gear_set := found.gear_set) is not None:
+        sources["Gear"] = f"{gear_set.name}{f', {gear_set.maker}' if gear_set.maker else ''}"
     content = {
         "title": found.name if found.gear_set is None else found.gear_set.name,
         "setting": setting(found),
@@ -58,44 +77,30 @@ def rig_report(found: Evaluation, provenance: Provenance | None = None, files: S
         "document": list(document_rows()),
         "ratio": ratio_of(found),
         "loops": [loop_part(found, number) for number in range(len(found.analyses))],
-        "overlay": rig_plates.overlay(found),
+        "overlay": overlay_figure(found),
         "comparisons": [comparison_part(found, each) for each in found.comparisons],
         "catalogue": list(catalogue_rows(found)),
         "budgets": list(budget_parts(found)),
-        "quality": rig_plates.quality(found),
-        "photographs": rig_setup.photographs(found.angles),
-        "centres": rig_setup.centre_words(found.angles),
-        "steps": list(rig_setup.step_rows(found)),
+        "quality": quality_figure(found),
+        "photographs": list(photographs(found.angles)),
+        "centres": list(centre_words(found.angles)),
+        "steps": list(step_rows(found)),
         "deviations": None if found.deviations is None else [sentence(each) for each in found.deviations],
-        "rows": [] if found.rig is None else rig_setup.rig_rows(found.rig),
+        "rows": [] if found.rig is None else list(rig_rows(found.rig)),
         "rig": found.rig,
-        "sources": list(source_rows(found)),
+        "sources": sources,
         "multiple": number(SOFT_COMPLIANCE_RATIO),
         "files": files,
     }
-    return render("rig.html.jinja", content | {"sections": _sections(content)}, provenance)
-
-
-def _sections(content: dict[str, Any]) -> dict[str, str]:
-    every = {
-        "table": "Stiffness and hysteresis",
-        "loops": "Loops",
-        "comparison": "Positions and units compared",
-        "catalogue": "Comparison with the catalogue",
-        "uncertainty": "Uncertainty",
-        "photographs": "Photographs",
-        "steps": "Steps",
-        "setup": "Rig",
-        "sources": "Definitions and sources",
-    }
     there = {
-        "comparison": content["comparisons"],
-        "catalogue": content["catalogue"],
-        "photographs": content["photographs"],
-        "steps": content["steps"],
-        "setup": content["rows"],
+        "comparison": "comparisons",
+        "catalogue": "catalogue",
+        "photographs": "photographs",
+        "steps": "steps",
+        "setup": "rows",
     }
-    return {anchor: name for anchor, name in every.items() if there.get(anchor, True)}
+    sections = {anchor: name for anchor, name in SECTIONS.items() if anchor not in there or content[there[anchor]]}
+    return render("rig.html.jinja", content | {"sections": sections}, provenance, "strainwave.rig.report")
 
 
 # ---- What was tested, and what came out -------------------------------------------------------------------------------
@@ -120,7 +125,8 @@ def setting(found: Evaluation) -> dict[str, str]:
         lost = sum(frame.markers is None for frame in frames)
         facts["Photographs"] = f"{len(frames)}, {f'{lost} without an angle' if lost else 'each with an angle'}"
     if times := [step.time for step in found.steps if step.time is not None]:
-        facts["Duration"] = _duration(max(times) - min(times))
+        minutes = round((max(times) - min(times)) / 60.0)
+        facts["Duration"] = f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
     temperatures = [value for loop in loops if loop.temperature is not None for value in loop.temperature.tolist()]
     if temperatures:
         facts["Temperature"] = (
@@ -133,11 +139,6 @@ def setting(found: Evaluation) -> dict[str, str]:
     return facts
 
 
-def _duration(seconds: float) -> str:
-    minutes = round(seconds / 60.0)
-    return f"{minutes // 60} h {minutes % 60:02} min" if minutes >= 60 else f"{minutes} min"
-
-
 def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     rows = table(found.analyses)
     stiff = [each for row in rows for each in (row.positive_unloading, row.negative_unloading)]
@@ -147,7 +148,7 @@ def _cards(found: Evaluation) -> Iterator[dict[str, str]]:
     yield _card(
         "Loading", soft, 1.0, "N·m/rad", f"Stiffness of the softest stretch on the way from zero torque to a peak, {over}."
     )
-    unit, scale = rig_plates.angle_unit(found.loops[0])
+    unit, scale = angle_unit(found.loops[0])
     widths = [row.hysteresis for row in rows]
     at_output = ""
     if (ratio := ratio_of(found)) is not None and (known := [each for each in widths if each is not None]):
@@ -207,7 +208,7 @@ def _with_labels(found: Evaluation, remarks: Sequence[Sequence[str]]) -> list[st
 def _catalogued(found: Evaluation) -> Iterator[str]:
     """Yield the widths that catalogues state, of each loop that determines them."""
     for label, analysis in zip(found.labels, found.analyses, strict=True):
-        unit, scale = rig_plates.angle_unit(analysis.loop)
+        unit, scale = angle_unit(analysis.loop)
         of = f"{label}: " if len(found.labels) > 1 else ""
         level = f"±{number(LOST_MOTION * (analysis.rated_torque or 0.0), 3)} N·m, 4 % of the rated torque"
         words = f"whole angle between {level}" if analysis.whole_angle else f"mean width at {level}"

@@ -12,22 +12,19 @@ import pytest
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.reading.recognise import recognise
-from strainwave.report import rig_figures
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import plain, results_json
-from strainwave.report.rig import rig_report, setting, summary, unknown
-from strainwave.report.rig_figures import COLOURS
-from strainwave.report.rig_files import angle_files, loop_files, loop_names, results
-from strainwave.report.rig_numbers import stated
-from strainwave.report.rig_setup import rig_rows
-from strainwave.rig import Camera, Loop, Step, Value, load
+from strainwave.rig import Camera, Loop, Step, Value, analyse, load
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.reading.evaluation import Evaluation, evaluate
+from strainwave.rig.report.figures import COLOURS, loop_figure, stiffness_figure
+from strainwave.rig.report.files import angle_files, loop_files, loop_names, results
+from strainwave.rig.report.page import rig_report, setting, summary, unknown
+from strainwave.rig.report.tables import rig_rows, stated
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.printed import printed_gear
 from strainwave.rig.virtual.render import Scene, render
-from strainwave.rig.vision.angle import measure_angles
-from strainwave.rig.vision.follow import Angles
+from strainwave.rig.vision.angle import Angles, measure_angles
 from strainwave.rig.vision.image import as_image
 
 from tests.python.report.reading import Page, points, printed, section
@@ -247,26 +244,23 @@ def test_the_rig_is_told_in_units_of_the_workshop() -> None:
 
 
 def test_a_loop_is_drawn_with_its_regimes_in_the_order_run() -> None:
-    angle, torque = np.array([0.0, -1.0, -2.0]), np.array([1.0, 0.5, 0.0])
-    branch = rig_figures.DrawnRegime("positive unloading", angle, torque)
-    width = rig_figures.DrawnWidth("a", "hysteresis", (-2.0, -1.0), 0.2)
-    names = ("angle [°]", "torque [N·m]")
-    svg = rig_figures.loop_figure((angle, torque), [branch], [width], names, 0.6, "one", "A loop")
-    root = Page(svg).root
+    angle, torque = [0.0, -0.04, -0.08, -1.0, -0.96, -0.92, 0.0], [1.0, 0.5, 0.0, -1.0, -0.5, 0.0, 1.0]
+    analysis = analyse(Loop(angle, torque, side="input", name="made"))
+    root = Page(str(loop_figure(analysis, "A loop", "one", 100.0))).root
     lines = [path for path in root.find("path") if "--measured" in path.attributes.get("style", "")]
     drawn = next(points(path) for path in lines if path.attributes["d"].count(" ") > 3)
     assert np.all(np.diff(drawn[:3, 0]) < 0.0)  # leftwards, as the angle falls
     texts = {node.text for node in root.find("text")}
-    assert {"positive unloading", "a: hysteresis", "a", "angle [°]", "torque [N·m]"} <= texts
+    assert {"positive unloading", "a: hysteresis", "a", "angle of the input [°]", "torque on the input [N·m]"} <= texts
     assert any("at the output [arcmin]" in each for each in texts)
 
 
 def test_soft_spots_are_shaded_and_wide_ranges_are_logarithmic() -> None:
-    torque = np.linspace(0.05, 0.35, 7)
-    stiff = np.array([4.5, 4.5, 0.3, 0.3, 0.3, 4.5, 4.5])
-    curve = rig_figures.StiffnessCurve("positive loading", torque, stiff, 0.9 * stiff, 1.1 * stiff, 1.0, (0.12, 0.28))
-    svg = rig_figures.stiffness_figure([curve], "soft", "Local stiffness")
-    texts = [node.text for node in Page(svg).root.find("text")]
+    up = np.linspace(-0.4, 0.4, 81)
+    soft = np.cumsum(np.where((up > 0.12) & (up < 0.28), 1.0 / 0.3, 1.0 / 4.5)) * (up[1] - up[0])
+    angle, torque = np.concatenate([soft[-1] + (up[::-1] - up[-1]) / 1.2, soft]), np.concatenate([up[::-1], up])
+    analysis = analyse(Loop(angle, torque, side="input", name="made", angle_sigma=1e-6))
+    texts = [node.text for node in Page(str(stiffness_figure(analysis, "made", "soft"))).root.find("text")]
     assert "soft spot" in texts
     assert {"0.5", "1", "2", "5"} <= set(texts)
 

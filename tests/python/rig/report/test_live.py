@@ -1,4 +1,4 @@
-"""What whoever stands at the rig sees."""
+"""The display during a test: its lines, and loops in the letters of a terminal."""
 
 from __future__ import annotations
 
@@ -6,9 +6,11 @@ from collections.abc import Iterator, Sequence
 from io import StringIO
 
 import numpy as np
+import pytest
+from hypothesis import given, strategies as st
 from rich.console import Console
-from strainwave.report.rig_live import Point, Terminal, live, point_line
 from strainwave.rig.bench.steps import Step
+from strainwave.rig.report.live import DOTS, Point, Terminal, live, loop_lines, point_line
 from strainwave.rig.running.guide import Look
 
 POINTS = [
@@ -17,6 +19,7 @@ POINTS = [
     Point("0003.png", -0.36, Look(np.nan, np.nan, "one marker is missing")),
     Point("0004.png", None, Look(-1.0, 2e-5)),
 ]
+LOOP = np.radians([0.0, -4.6, -58.9, -54.7, 0.0]), np.array([0.36, 0.0, -0.36, 0.0, 0.36])
 
 
 class Clock:
@@ -86,3 +89,40 @@ def test_the_guide_says_what_to_do_and_shows_what_came_of_it() -> None:
     assert "2.png  +0.200 N·m  +28.6479° ± 2.1″" in shown
     assert shown.count("torque [N·m]") == 1  # two points of one position are the first that make a loop
     assert "no marker" in shown
+
+
+@given(st.integers(36, 200), st.sampled_from(["utf-8", "ascii", "latin-1"]))
+def test_no_line_is_wider_than_the_terminal_and_all_can_be_encoded(width: int, letters: str) -> None:
+    lines = loop_lines(*LOOP, width, letters)
+    assert lines
+    assert max(map(len, lines)) <= width
+    "\n".join(lines).encode(letters)
+
+
+def test_a_narrow_terminal_gets_no_plot() -> None:
+    assert loop_lines(*LOOP, 35) == []
+
+
+def test_the_last_point_is_marked_where_it_lies() -> None:
+    lines = loop_lines(np.radians([0.0, -60.0]), np.array([0.4, -0.4]), 50, rows=8)
+    assert lines[1][-1] in map(chr, range(0x2801, 0x2900))
+    assert len(lines[1]) == len(lines[-3])  # it reaches the end of the axis
+    assert "●" in lines[8]
+    assert lines[8].index("●") == lines[8].index("┤") + 1
+    assert lines[-2].split() == ["−60", "0"]
+
+
+@given(st.lists(st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)), min_size=1, max_size=30))
+def test_any_points_are_drawn(points: list[tuple[float, float]]) -> None:
+    angle, torque = np.array(points).T
+    lines = loop_lines(angle, torque, 60)
+    assert sum(line.count("●") for line in lines) == 1
+
+
+def test_the_dots_of_a_letter_are_eight_bits() -> None:
+    assert sum(bit for column in DOTS for bit in column) == 0xFF
+
+
+@pytest.mark.parametrize("angle", [0.0, 1.0])
+def test_a_single_point_is_a_plot(angle: float) -> None:
+    assert any("●" in line for line in loop_lines(np.array([angle]), np.array([0.36]), 60))

@@ -13,10 +13,13 @@ from typing import Any
 
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds.torsion_loop import in_steps
+from strainwave.report.provenance import Provenance
+from strainwave.report.results_json import results_json
 from strainwave.rig.analysis.analysis import LoopAnalysis
 from strainwave.rig.loop import COLUMNS, Loop
 from strainwave.rig.reading.evaluation import Evaluation
-from strainwave.rig.vision.follow import Angles
+from strainwave.rig.report.page import rig_report
+from strainwave.rig.vision.angle import Angles
 
 MARKER_COLUMNS = {
     "x": "px",
@@ -168,3 +171,11 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
         "corrections": loop.corrections,
         "remarks": analysis.remarks,
     }
+
+
+def evaluation_files(found: Evaluation, provenance: Provenance) -> dict[str, str | bytes]:
+    """Return loops and angles of a test of torsion as tables, the numbers as JSON, and the page, by file name."""
+    files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
+    files["results.json"] = results_json(results(found, provenance.date))
+    files["report.html"] = rig_report(found, provenance, list(files))
+    return files

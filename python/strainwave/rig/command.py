@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,21 +14,36 @@ import typer
 
 from strainwave.commands.help import Verbs
 from strainwave.commands.options import folder, numeric, whole, with_groups
+from strainwave.files.folder import inside
+from strainwave.files.gear_set import GearSet
+from strainwave.files.writing import claiming, making, write_folder, written
+from strainwave.messages import pairs
 from strainwave.number_texts import number_in
+from strainwave.report.provenance import Provenance
+from strainwave.rig.bench.rig_file import load, write_rig
+from strainwave.rig.bench.setup import Rig
+from strainwave.rig.bench.steps import Step, photograph_of, read_steps, write_steps
+from strainwave.rig.bench.torque import torque_of_masses
+from strainwave.rig.influence.series import analyse_series, read_series, series_of
+from strainwave.rig.loop import COLUMNS
+from strainwave.rig.reading.evaluation import EvaluationOptions, evaluate_paths
+from strainwave.rig.reading.measurement import PLAN
+from strainwave.rig.report.files import evaluation_files, loop_names
+from strainwave.rig.report.influence import influence_report, summary as trend_lines
+from strainwave.rig.report.live import Terminal, live
+from strainwave.rig.report.page import summary
+from strainwave.rig.running.guide import Device, Filled, PictureSource, Settling, conduct, done_before
+from strainwave.rig.running.plan import Pans, Plan, plan
+from strainwave.rig.running.watching import Reader, Watch
+from strainwave.rig.virtual.printed import ARTICLE, gear_named, narrower
+from strainwave.rig.virtual.test import Virtual, rehearsal, simulate_test
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from strainwave.report.provenance import Provenance
-    from strainwave.rig.bench.setup import Rig
-    from strainwave.rig.bench.steps import Step
-    from strainwave.rig.running.guide import Settling
-    from strainwave.rig.running.plan import Pans, Plan
-    from strainwave.rig.running.sources import PictureSource
 
-rig = typer.Typer(cls=Verbs, help="Plan, make and analyse tests of torsional stiffness.")
+app = typer.Typer(cls=Verbs, add_completion=False, rich_markup_mode=None)
 
-ARTICLE = "torsional-stiffness-article"  # the gears of the torsional stiffness article's Table 2, as `gear_named` knows them
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
 
@@ -54,7 +69,6 @@ class PlanOptions:
         Raises:
             ValueError: a position or a specimen is named twice, or the masses do not make the torque
         """
-        from strainwave.rig.running.plan import plan
 
         places = [radians(each) for each in _numbers("--positions", self.positions)]
         specimens = [each.strip() for each in self.specimens.split(",")]
@@ -67,7 +81,7 @@ class PlanOptions:
 USUAL_PLAN = PlanOptions()
 
 
-@rig.command("plan")
+@app.command("plan")
 @with_groups
 def plan_command(
     name: RigOption = "couple-rig",
@@ -83,11 +97,10 @@ def plan_command(
         strainwave rig plan --torque 0.3 --positions 0
         strainwave rig plan --out steps.csv
     """
-    from strainwave.rig.bench.steps_file import write_steps
 
     if out is not None and out.suffix != ".csv":
         raise ValueError(f"--out {out} must end in .csv")
-    made = options.plan(_rig(name))
+    made = options.plan(load(name))
     if out is not None:
         write_steps(made.steps, out)
     print(made)
@@ -95,7 +108,7 @@ def plan_command(
         print(f"wrote {out}")
 
 
-@rig.command()
+@app.command()
 @with_groups
 def simulate(
     gear: Annotated[
@@ -116,12 +129,7 @@ def simulate(
         strainwave rig simulate hfuc-20-80 --positions 0 --out hfuc
     """
 
-    from strainwave.rig.bench.steps_file import write_steps
-    from strainwave.rig.reading.measurement import PLAN
-    from strainwave.rig.virtual.rehearsal import gear_named, narrower
-    from strainwave.rig.virtual.test import simulate_test
-
-    bench = _rig(name)
+    bench = load(name)
     made = options.plan(bench)
     steps = made.steps
     test = simulate_test(gear_named(gear), bench, steps, folder=out, seed=seed)
@@ -135,7 +143,7 @@ def simulate(
     print(f"to analyse it: strainwave rig analyse {out}")
 
 
-@rig.command()
+@app.command()
 @with_groups
 def measure(
     camera: Annotated[
@@ -163,10 +171,9 @@ def measure(
     """
     from rich.console import Console
 
-    from strainwave.files.writing import claiming, making, written
-    from strainwave.rig.running.guide import Settling
-
-    settling = Settling(_count("--pictures", pictures), _positive("--interval", interval), _positive("--patience", patience))
+    if not 1 <= pictures <= MAX_PICTURES:
+        raise ValueError(f"--pictures {pictures} must be 1 to {MAX_PICTURES}")
+    settling = Settling(pictures, _seconds("--interval", interval), _seconds("--patience", patience))
     bench = _rig_of_test(out, name)
     made = options.plan(bench)
     source = _source(camera, bench, made.steps, gear)
@@ -181,7 +188,7 @@ def measure(
         print(f"to analyse them: strainwave rig analyse {out}")
 
 
-@rig.command()
+@app.command()
 def analyse(
     paths: Annotated[
         list[Path], typer.Argument(metavar="FOLDER|FILE…", help="Folders of tests, or loops as .csv or .parquet; also several.")
@@ -221,18 +228,11 @@ def analyse(
         strainwave rig analyse rehearsal
         strainwave rig analyse rehearsal --out results
     """
-    from strainwave.files.gear_set import GearSet
-    from strainwave.files.writing import write_folder
-    from strainwave.messages import pairs
-    from strainwave.report.files_of import evaluation_files
-    from strainwave.report.rig import summary
-    from strainwave.report.rig_files import loop_names
-    from strainwave.rig.loop import COLUMNS
-    from strainwave.rig.reading.reading import EvaluationOptions, evaluate_paths
 
-    target = _target(paths, out)
+    alone = len(paths) == 1 and paths[0].is_dir()
+    target = out or (paths[0] / "analysis" if alone else Path("out/rig"))
     given = EvaluationOptions(
-        rig=None if name is None else _rig(name),
+        rig=None if name is None else load(name),
         gear_set=None if gear is None else GearSet.read(gear),
         rated_torque=rated_torque,
         reference=reference,
@@ -253,7 +253,7 @@ def analyse(
         print(f"for a gear: strainwave {shlex.join(words)}")
 
 
-@rig.command()
+@app.command()
 def watch(
     folder: Annotated[Path, typer.Argument(help="Folder of a test that is being run.")],
     name: Annotated[
@@ -274,12 +274,6 @@ def watch(
     """
     from rich.console import Console
 
-    from strainwave.files.folder import inside
-    from strainwave.report.rig_live import Point, live
-    from strainwave.rig.bench.steps_file import read_steps
-    from strainwave.rig.reading.measurement import PLAN
-    from strainwave.rig.running.watching import Watch
-
     if not folder.is_dir():
         raise FileNotFoundError(f"{folder}: there is no such folder")
     bench = _rig_of_test(folder, name)
@@ -287,16 +281,13 @@ def watch(
     planned = kept if plan is None and kept.exists() else plan
     watched = Watch(folder, bench, read_steps(planned) if planned is not None else ())
 
-    def look() -> list[Point]:
-        return [Point(each.name, each.torque, each.look, each.warnings) for each in watched.new()]
-
-    longest = inf if idle is None else _positive("--idle", idle)
-    points = live(Console(stderr=True), look, longest, _positive("--interval", interval))
+    longest = inf if idle is None else _seconds("--idle", idle)
+    points = live(Console(stderr=True), watched.new, longest, _seconds("--interval", interval))
     read = sum(not point.look.fault for point in points)
     print(f"{len(points)} photographs, {read} of them with an angle")
 
 
-@rig.command()
+@app.command()
 def influence(
     measured: Annotated[
         Path | None,
@@ -320,36 +311,21 @@ def influence(
         strainwave rig influence --measured series.csv
         strainwave rig influence --measured series.csv --out trends
     """
-    from strainwave.files.writing import write_folder
-    from strainwave.report.influence import influence_report, summary
-    from strainwave.report.provenance import Provenance
-    from strainwave.rig.influence.series import analyse_series, read_series, series_of
 
     if (measured is None) == (not loop):
         raise ValueError("give one series: a table with --measured, or its loops with --loop")
     series = read_series(measured) if measured is not None else series_of(loop or [])
     trends = analyse_series(series)
     write_folder(out, {"report.html": influence_report(series, trends, Provenance.of_this_command(series.files))})
-    print(summary(series, trends))
+    print(trend_lines(series, trends))
     print(f"wrote {out / 'report.html'}")
 
 
 # ---- A test that was made ---------------------------------------------------------------------------------------------
 
 
-def _target(paths: Sequence[Path], out: Path | None) -> Path:
-    """Return the folder of the results."""
-    if out is not None:
-        return out
-    return paths[0] / "analysis" if len(paths) == 1 and paths[0].is_dir() else Path("out/rig")
-
-
 def _provenance(read: Sequence[Path]) -> Provenance:
     """Return the origin of the report; files of the same name are shown with their folders."""
-    from dataclasses import replace
-
-    from strainwave.report.provenance import Provenance
-
     names = [path.name for path in read]
     digests: dict[str, str] = {}
     for path in read:
@@ -361,20 +337,13 @@ def _provenance(read: Sequence[Path]) -> Provenance:
 # ---- Values of options ------------------------------------------------------------------------------------------------
 
 
-def _rig(name: str) -> Rig:
-    from strainwave.rig.bench.rig_file import load
-
-    return load(name)
-
-
 def _rig_of_test(folder: Path, name: str | None) -> Rig:
     """The rig that was named, or that of the folder, or the one of the torsional stiffness article."""
-    from strainwave.files.folder import inside
 
     there = inside(folder, "rig.toml")
     if name is None and there.exists():
-        return _rig(str(there))
-    return _rig("couple-rig" if name is None else name)
+        return load(str(there))
+    return load("couple-rig" if name is None else name)
 
 
 def _numbers(option: str, text: str) -> list[float]:
@@ -384,21 +353,13 @@ def _numbers(option: str, text: str) -> list[float]:
         raise ValueError(f"{option} {text}: write numbers with commas between, as 0,60,120") from None
 
 
-def _positive(option: str, value: float) -> float:
+def _seconds(option: str, value: float) -> float:
     if not 0.0 < value <= MAX_SECONDS:
         raise ValueError(f"{option} {value:g} s must be above 0 and at most {MAX_SECONDS:g}")
     return value
 
 
-def _count(option: str, value: int) -> int:
-    if not 1 <= value <= MAX_PICTURES:
-        raise ValueError(f"{option} {value} must be 1 to {MAX_PICTURES}")
-    return value
-
-
 def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> PictureSource:
-    from strainwave.rig.running.sources import Device, Filled
-    from strainwave.rig.virtual.rehearsal import gear_named, rehearsal
 
     if camera == "virtual":
         return rehearsal(bench, steps, gear_named(gear))
@@ -410,9 +371,6 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Pict
 
 def _keep_plan(made: Plan, out: Path) -> None:
     """Write the plan into the test's folder, or refuse a plan that differs from that of an interrupted test."""
-    from strainwave.files.folder import inside
-    from strainwave.rig.bench.steps_file import read_steps, write_steps
-    from strainwave.rig.reading.measurement import PLAN
 
     kept = inside(out, PLAN)
     if not kept.exists():
@@ -423,12 +381,6 @@ def _keep_plan(made: Plan, out: Path) -> None:
 
 def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: PictureSource, settling: Settling) -> int:
     """Guide through the remaining steps, and return the count of steps done."""
-    from strainwave.report.rig_live import Terminal
-    from strainwave.rig.bench.rig_file import write_rig
-    from strainwave.rig.bench.steps_file import photograph_of
-    from strainwave.rig.running.guide import conduct, done_before
-    from strainwave.rig.running.sources import Virtual
-    from strainwave.rig.running.watching import Reader, torque_of_masses
 
     done, reader = done_before(made.steps, out), Reader(bench.camera)
     if not (out / "rig.toml").exists():
