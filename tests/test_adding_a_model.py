@@ -77,7 +77,7 @@ ELSEWHERE = {
         "verbs.cpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
-        "diagnose/steady_run.py": "an error of one order, by which a drive is probed",
+        "diagnose/smallest_error.py": "an error of one order, by which a drive is probed",
     },
     "ToothWear": {"spline_orders.py": "its waves have the orders of the splines"},
     "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
@@ -138,7 +138,7 @@ ELSEWHERE = {
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/control.cpp": BOUND_TO_ANY,
         "native/static_type.py": "whose law and compensation are parameters of its type",
@@ -150,7 +150,7 @@ ELSEWHERE = {
     },
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
         "sensor/delayed.hpp": "what it delays by default",
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
@@ -158,10 +158,10 @@ ELSEWHERE = {
     "BristleObserver": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Delayed": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Encoder": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
     },
-    "Noisy": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
-    "Quantised": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
+    "Noisy": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
+    "Quantised": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
@@ -184,7 +184,7 @@ ELSEWHERE = {
     },
     "Cyclic": {
         "parameter_drive.hpp": BOUND_TO_ANY,
-        "identification/kinds/constant_speed_runs.py": "waves found over the angle, around the friction that is known",
+        "identification/kinds/constant_speed.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
         "parameter_drive.hpp": BOUND_TO_ANY,

@@ -16,8 +16,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.friction import innermost
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit, fit
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, order_waves, solved
 
 Array = NDArray[np.float64]
 

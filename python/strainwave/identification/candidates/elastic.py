@@ -45,10 +45,9 @@ from strainwave.identification.experiments.motion_log import MotionLog, inertia_
 from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import Estimate, plan
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
-from strainwave.statistics.linear_fit import linear_fit, solved
-from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.linear_fit import linear_fit, order_waves, solved
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain
 
 Array = NDArray[np.float64]
 

@@ -37,12 +37,12 @@ from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MIN_
 from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit, problem_of, solved_problem
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import HeldOut
+from strainwave.identification.results.steady_friction import STEADY_FRICTION
 from strainwave.parameters import plain
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -360,7 +360,7 @@ def spread_by_blocks(best: MotionCandidate) -> dict[str, float]:
     values = np.array([x, *without_rows(problem, x, [slow, *blocks], ())]).T
     numbers = {plain(each.path): own for each, own in zip(problem.plan.unknowns, values, strict=False)}
     if speed_of_all := best.model.one_speed:
-        numbers[STEADY] = numbers[f"{INPUT}coulomb"] + speed_of_all * numbers.get(f"{INPUT}viscous", np.zeros(1))
+        numbers[STEADY_FRICTION] = numbers[f"{INPUT}coulomb"] + speed_of_all * numbers.get(f"{INPUT}viscous", np.zeros(1))
     return {
         path: float(np.hypot(np.sqrt((JACKKNIFE_BLOCKS - 1) * np.var(own[2:])), own[1] - own[0]))
         for path, own in numbers.items()
@@ -394,7 +394,7 @@ def _numbers(candidate: MotionCandidate) -> dict[str, float]:
     model, law = candidate.model, candidate.model.law
     numbers = dict(zip(map(plain, model.free), candidate.values, strict=True))
     if model.one_speed:
-        numbers[STEADY] = float(law.coulomb + model.one_speed * law.viscous)
+        numbers[STEADY_FRICTION] = float(law.coulomb + model.one_speed * law.viscous)
         return numbers
     fast = float(np.quantile(np.abs(model.log.motion.speed[model.log.motion.rows]), FAST_SHARE))
     return {**numbers, OF_ALL_LAWS[0]: float(law.coulomb), OF_ALL_LAWS[1]: slope_of(law, fast)}

@@ -22,7 +22,7 @@ from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import END_SAMPLES
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MIN_INERTIA, MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

@@ -25,8 +25,7 @@ from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.statistics.covariance import covariance_of, posterior_of
 from strainwave.statistics.linear_fit import normal_inverse, solved
 from strainwave.statistics.residuals import chance_of_gain, correlation_length
-from strainwave.statistics.scale import noise_sigma
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, noise_sigma, student
 
 Array = NDArray[np.float64]
 

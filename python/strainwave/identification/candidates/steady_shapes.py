@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, order_waves, solved
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]

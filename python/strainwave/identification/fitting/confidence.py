@@ -17,7 +17,7 @@ from strainwave.messages import listed, quoted
 from strainwave.presentation import PLAIN_DIGITS, Pictured, Presented, Row
 from strainwave.progress import Progress, by_count
 from strainwave.statistics.residuals import correlation_length
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

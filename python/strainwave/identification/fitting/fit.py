@@ -206,8 +206,7 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named, pictures_of
-        from strainwave.identification.results.picture_plot import pictures_figure
+        from strainwave.identification.results.pictures import part_named, pictures_figure, pictures_of
 
         part = part_named(self, record)
         channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
@@ -227,8 +226,7 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name, or the record has no time
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named
-        from strainwave.identification.results.residual_spectrum import spectrum_figure
+        from strainwave.identification.results.pictures import part_named, spectrum_figure
 
         part = part_named(self, record)
         return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")

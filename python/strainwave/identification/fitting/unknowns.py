@@ -16,7 +16,7 @@ from strainwave.files.entries import Entry, Quantity
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import Parameter, every, parameters, unknown
 from strainwave.presentation import Presented
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 LIMIT_TOLERANCE = 1e-6  # of the size of a parameter: within it of a limit, a fit ended there
 MAX_DISTANCE = 0.1  # of the size of a parameter before the fit, from its limit: a fit that ended there moved it
