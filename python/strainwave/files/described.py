@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from strainwave.files.entries import NOT_GIVEN, OPPOSITE, Entry
+from strainwave.files.entries import NOT_GIVEN, OPPOSITE_SENSE, Entry
 
 
 class PartField(NamedTuple):
@@ -62,8 +62,8 @@ def all_paths(path: str, model: Any) -> Iterator[str]:
 # ---- Origins ---------------------------------------------------------------------------------------------------------
 
 
-IDENTIFIED = "identified"  # begins the source of a number that a measurement determines, alone or in combination
-HEADINGS = {
+IDENTIFIED_SOURCE = "identified"  # begins the source of a number that a measurement determines, alone or in combination
+ORIGIN_HEADINGS = {
     True: "identified, with one standard deviation:",
     False: "not identified, of the set before or assumed, with the spread or standard deviation that its source states:",
 }
@@ -85,12 +85,12 @@ def origin_lines(models: Mapping[str, Any], sources: Mapping[str, Entry]) -> lis
     for path, value, unit in (number for name, model in models.items() for number in _numbers(name, model)):
         entry = sources.get(path, Entry(NOT_GIVEN))
         if entry.source != NOT_GIVEN:
-            identified, sigma = entry.source.startswith(IDENTIFIED), entry.sigma(value)
+            identified, sigma = entry.source.startswith(IDENTIFIED_SOURCE), entry.sigma(value)
             within = "" if sigma is None else f" ± {sigma:.2g}"
             line = f"  {path} = {value:.6g}{within} {unit.removesuffix('1')}".rstrip()
-            is_said = identified or OPPOSITE in entry.source
+            is_said = identified or OPPOSITE_SENSE in entry.source
             groups[identified].append(f"{line}, {entry.source}" if is_said else line)
-    return [line for each, lines in groups.items() for line in (HEADINGS[each], *lines) if lines] if groups[True] else []
+    return [line for each, lines in groups.items() for line in (ORIGIN_HEADINGS[each], *lines) if lines] if groups[True] else []
 
 
 def _numbers(path: str, model: Any) -> Iterator[tuple[str, float, str]]:

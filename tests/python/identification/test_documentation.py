@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.candidates import ripple
-from strainwave.identification.checks import comparisons, shape, sizes, unexplained
+from strainwave.identification.checks import comparisons, logs, shape, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
@@ -35,7 +35,7 @@ def percent(share: float) -> str:
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
         f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
         f"with an RMS of more than {percent(shape.MAX_SHARE_OF_SHAPE)} of what varies",
-        f"Noise repeats as well in 1 of {1.0 / shape.MAX_CHANCE:g} records",
+        f"White noise repeats as well in 1 of {1.0 / shape.MAX_CHANCE:g} records",
         f"A shape of {100.0 * shape.MIN_SHARE_OF_SHAPE:g} to {percent(shape.MAX_SHARE_OF_SHAPE)} is a remark",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
         f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small, "
@@ -53,6 +53,8 @@ def percent(share: float) -> str:
         f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - ripple.MIN_OWN_SHARE**2), 3))} move the other way",
         f"a probability of {percent(ripple.MAX_CHANCE)} at most",
         f"uncertain by {percent(ripple.BIAS_IN_FULL_BAND)} at least",
+        f"a recorded speed is more than {logs.MAX_SPEED_FACTOR:g} times the slope of its angle",
+        f"differs from that of the gear by a factor of more than {logs.MAX_RATIO_FACTOR:g} over their correlation",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

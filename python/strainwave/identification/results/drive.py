@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, loads, motor
 from strainwave.files.described import own_paths
-from strainwave.files.entries import OPPOSITE, Entry
+from strainwave.files.entries import OPPOSITE_SENSE, Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
 from strainwave.identification.candidates.motion_candidate import nuisances_of
@@ -203,8 +203,8 @@ def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedPa
     """Return the set with the motor of a log; the source of its constant states if the log counts the other way."""
     known = _with_motor_of(whole, log, parameters)
     path = "motor.torque_constant" if "motor.torque_constant" in known.sources else MOTOR
-    entry, turned = known.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
-    if not turned or OPPOSITE in entry.source:
+    entry, turned = known.sources[path], next((each for each in log.remarks if OPPOSITE_SENSE in each), "")
+    if not turned or OPPOSITE_SENSE in entry.source:
         return known
     stated = replace(entry, source=f"{entry.source}; in {one_line(log.name)} {turned}")
     return known.replace(sources={**known.sources, path: stated})

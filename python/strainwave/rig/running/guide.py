@@ -12,7 +12,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from strainwave.files.writing import DRAFT
+from strainwave.files.writing import DRAFT_PREFIX
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.bench.steps_file import FILE, append_step, read_steps
 from strainwave.rig.running.sources import PictureSource
@@ -213,7 +213,7 @@ def conduct(
     for planned in plan[len(steps) :]:
         load(planned.number)
         answered = _answer(talk, talk.ask(planned, steps[-1] if steps else None))
-        with TemporaryDirectory(prefix=DRAFT, dir=folder) as drafts:
+        with TemporaryDirectory(prefix=DRAFT_PREFIX, dir=folder) as drafts:
             rest, answered = _at_rest(planned, Path(drafts), source, look, talk, settling, answered)
             if answered.stop or rest.picture is None:
                 return steps
