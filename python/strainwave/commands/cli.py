@@ -21,18 +21,18 @@ from strainwave.commands.diagnose import diagnose
 from strainwave.commands.docs import docs
 from strainwave.commands.doctor import doctor
 from strainwave.commands.export import export
-from strainwave.commands.help import Verbs
+from strainwave.commands.help import Verbs, Wing
 from strainwave.commands.identify import identify
 from strainwave.commands.list import list_command
 from strainwave.commands.orders import orders
 from strainwave.commands.plan import plan
 from strainwave.commands.predict import predict
-from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
 from strainwave.messages import one_line, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError, added_to
 
+rig = typer.Typer(cls=Wing, help="Plan, make and analyse tests of torsional stiffness.")
 # Verbs, and rooms of several verbs, under the headings of the help.
 HEADINGS: dict[str, dict[str, Any]] = {
     "From measurements": {"identify": identify, "predict": predict, "orders": orders, "plan": plan, "rig": rig},
@@ -179,7 +179,8 @@ def _misuse(error: Any) -> str:
         gear = str(error.ctx.params.get("gear"))
         if Path(gear).suffix != ".toml" and Path(gear).exists():
             wrong = f"{unquoted(gear)} is a file, where the gear is asked for: name it first (strainwave list gears)"
-    verbs = getattr(error.ctx.command, "commands", {}) if error.ctx is not None and error.ctx.parent is not None else {}
+    room = error.ctx.command if error.ctx is not None and error.ctx.parent is not None else None
+    verbs = room.list_commands(error.ctx) if isinstance(room, Verbs) else []
     if wrong.startswith("No such command"):
         wrong += f": {command} is followed by {' or '.join(verbs)}" if verbs else ""
     return f"{wrong}; see {command} --help"

@@ -24,12 +24,11 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.roles import AS_WAS_GIVEN
 from strainwave.identification.reading.source import MeasurementFile
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
-from strainwave.identification.results.ratio import with_ratio
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED
+from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio
 from strainwave.messages import listed, one_line
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
-from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
+from strainwave.statistics.scale import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 

@@ -33,8 +33,8 @@ class Vibration(Kind):
         side: Side = mapping.side or motion.channel.side or "input"
         why = f"its columns are {names_of([motion, *vibration.values()])}: {self.title}"
         assumed = "" if mapping.side or motion.channel.side else f"{motion.name} is taken for that of the motor"
-        found = {**first(columns, "time"), f"{side}_{motion.channel.quantity}": motion, **vibration}
-        return ColumnRoles(self.name, found, side, tuple(filter(None, (why, assumed))))
+        by_channel = {**first(columns, "time"), f"{side}_{motion.channel.quantity}": motion, **vibration}
+        return ColumnRoles(self.name, by_channel, side, tuple(filter(None, (why, assumed))))
 
     def fit(self, file: Recognised, known: GearSoFar) -> NoReturn:
         """

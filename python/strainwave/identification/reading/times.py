@@ -17,7 +17,7 @@ from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, measures
 from strainwave.identification.reading.names import meaning, words_of
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 
