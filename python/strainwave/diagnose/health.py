@@ -14,7 +14,7 @@ from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
 from strainwave.presentation import Presented
-from strainwave.statistics.student import student
+from strainwave.statistics.scale import student
 
 Array = NDArray[np.float64]
 

@@ -20,7 +20,7 @@ from strainwave.diagnose.detection import CONFIDENCE_LEVEL, false_alarm_of
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes, order_spectrum
 from strainwave.presentation import Presented
-from strainwave.statistics.student import student
+from strainwave.statistics.scale import student
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

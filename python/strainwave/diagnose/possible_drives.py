@@ -25,8 +25,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes
 from strainwave.parameters import every
-from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.linear_fit import normal_inverse, order_waves, solved
 from strainwave.tuning.drawn import drawn_gears
 
 Array = NDArray[np.float64]

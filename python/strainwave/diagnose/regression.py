@@ -15,7 +15,7 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import quoted
 from strainwave.orders.smooth_part import MIN_GRAVITY_SPAN, MIN_SENSE_SHARE, floor_without, orthonormal
 from strainwave.orders.turning import evenly_turning, unwrapped
-from strainwave.statistics.floor import Floor
+from strainwave.statistics.spectrum import Floor
 
 Array = NDArray[np.float64]
 

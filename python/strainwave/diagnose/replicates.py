@@ -17,9 +17,8 @@ from strainwave.diagnose.refusals import JointRecording
 from strainwave.diagnose.regression import MAX_SAMPLES
 from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
 from strainwave.orders.torque_ripple import Ripple
-from strainwave.statistics.floor import Floor
-from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, normal_inverse, order_waves, solved
+from strainwave.statistics.spectrum import Floor
 
 Array = NDArray[np.float64]
 

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from strainwave.orders.smooth_part import FittedColumns, Moving, Shaft
 from strainwave.presentation import Presented
-from strainwave.statistics.floor import Floor, floor_under
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.spectrum import Floor, floor_under
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

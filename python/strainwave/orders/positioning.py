@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.presentation import Presented
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, order_waves, solved
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]

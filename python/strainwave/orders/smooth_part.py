@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
-from strainwave.statistics.floor import Floor, floor_of, taper
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.linear_fit import order_waves, solved
 from strainwave.statistics.scale import robust_sigma
+from strainwave.statistics.spectrum import Floor, floor_of, taper
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

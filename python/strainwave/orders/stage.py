@@ -25,8 +25,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.statistics.floor import floor_of
 from strainwave.statistics.linear_fit import normal_inverse, own_share, solved
+from strainwave.statistics.spectrum import floor_of
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -19,8 +19,8 @@ from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
+from strainwave.files.plots import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
 from strainwave.files.recording import Recording
-from strainwave.files.recording_plot import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
 from strainwave.files.writing import claiming, making
 from strainwave.messages import in_a_sentence, listed, one_line, quoted
 from strainwave.native import device, kernels

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.dataset.faults import with_faults
-from strainwave.dataset.members import HEALTHY_LABEL
-from strainwave.dataset.plan import DatasetPlan
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan
 from strainwave.dataset.sampling import MIXED_SPLIT
 from strainwave.dataset.shards import Shards
 
