@@ -18,11 +18,10 @@ from strainwave.files.units import convert
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.sizes import MIN_RATIO, REST_SPEED
 from strainwave.identification.kinds.prepared_log import log_of
-from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import EFFORTS, Side, meaning, words_of
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, EFFORT_WORDS, Side, meaning, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
+from strainwave.identification.reading.roles import MIN_MOTOR_SPEED
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import Answer
 
@@ -216,7 +215,7 @@ def efforts_of(file: Recognised, known: GearSoFar, given: FileMapping) -> list[E
     quantity, is_unit_open = CHANNELS[channel].quantity, channel in file.units_assumed
     names = [column, file.columns["speed"]] if is_table else [column]
     meanings = [each for name in names if (each := meaning(Label(name, name, None))) is not None]
-    by_person = {ALIASES.get(each, each) for each in given.columns}
+    by_person = {CHANNEL_ALIASES.get(each, each) for each in given.columns}
     has_side = given.side or channel in by_person & set(SIDES_OF_TORQUE) or any(each.side for each in meanings)
     if is_table:
         has_side = has_side or any(each.robot for each in meanings) or np.abs(file.recording["speed"]).max() > MIN_MOTOR_SPEED
@@ -227,7 +226,9 @@ def efforts_of(file: Recognised, known: GearSoFar, given: FileMapping) -> list[E
     torques = {("joint_torque" if side == "output" else "input_torque", side): share for side, share in sides.items()}
     shares = {("current", side): share for side, share in sides.items()} if quantity == "current" else torques
     shares = shares if is_open else {next(iter(shares)): 1.0}
-    may_be_current = EFFORTS & set(words_of(column)) and not {channel, quantity} & by_person and "current" not in file.columns
+    may_be_current = (
+        EFFORT_WORDS & set(words_of(column)) and not {channel, quantity} & by_person and "current" not in file.columns
+    )
     if not is_table and quantity == "torque" and is_unit_open and may_be_current:
         of_torques = 1.0 - SHARE_OF_TORQUES if "torque_constant" in file.constants else SHARE_OF_TORQUES
         shares = {each: share * of_torques for each, share in shares.items()} | {("current", "input"): 1.0 - of_torques}

@@ -24,11 +24,18 @@ from strainwave.identification.checks.comparisons import (
 )
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.reading.joints import check_one_joint
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.other_format import other_format
-from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
-from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.reading.source import (
+    BAG_FILE,
+    Measurement,
+    MeasurementFile,
+    MeasurementFiles,
+    measurement_files,
+    other_format,
+)
 from strainwave.identification.readings import answered, decided
 from strainwave.identification.results.combined_parameter import CombinedParameter, combine, without_motor
 from strainwave.identification.results.drive import drive_set, name_of_files
@@ -269,7 +276,7 @@ def read_measurements(
 
 def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
     path = file.path
-    if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
+    if file.recording is None and path.is_dir() and not Path(path, BAG_FILE).is_file():
         suffixes = listed(f"*{suffix}" for suffix in FORMATS)
         return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {suffixes}")
     if file.recording is None and (other := other_format(path)):

@@ -14,16 +14,16 @@ from strainwave.identification.candidates.motion_candidate import MotionCandidat
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.sizes import MISTAKEN_UNITS
-from strainwave.identification.experiments.motion_log import MotionLog, per_torque
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.reading.missing_units import MAX_JOINT_ANGLE
+from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque
+from strainwave.identification.fitting.unknowns import Estimate
+from strainwave.identification.reading.motion import MIN_EXPLAINED, PARTS_OF_RECORD, slopes_and_speeds, speed_per_slope
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.slopes import speed_per_slope
+from strainwave.identification.reading.units import MAX_JOINT_ANGLE
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
 from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, MAX_UNEXPLAINED, Check, HeldOut, is_uncertain
 from strainwave.messages import as_option, listed
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.orders.shaft_pair import Ratio
 from strainwave.orders.torque_ripple import ripple
 from strainwave.questions import NUMBER
@@ -46,6 +46,7 @@ MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its uni
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
 MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the nearest units, rpm and deg/s, lie a factor of 6 apart
 MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
+MAX_RATIO_FACTOR = 1.15  # between a ratio by motions of both shafts and that of the gear, but for noise: catalogues step by 1.2
 USUAL_UNITS = {"speed": ("rad/s", "deg/s", "rpm", "rev/s"), "angle": ("rad", "deg", "rev")}
 MAX_OFF_UNIT = 0.1  # relative: a unit that is nearer explains a factor
 VOLTAGE_BLOCKS = 10  # over which residuals of the voltage scatter
@@ -156,6 +157,66 @@ def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
         if factor := abs(speed_per_slope(record[angle], record[speed], record.time)):
             names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in (angle, speed)]
             yield factor, speed, names
+
+
+def motions_of_both_shafts(file: Recognised, ratio: float) -> Iterator[Check]:
+    """Yield the check that a motion of the input is the ratio of the gear times as fast as one of the output.
+
+    It compares the angle of one shaft with the speed of the other, or the two speeds. Two angles have a check of their own.
+
+    Args:
+        file: the log, as it is fitted
+        ratio: of the gear
+    """
+    record = file.recording
+    pairs = [
+        (of_input, of_output)
+        for of_input, of_output in (
+            ("input_angle", "output_speed"), ("input_speed", "output_angle"), ("input_speed", "output_speed"),
+        )
+        if {of_input, of_output, "time"} <= set(record.names)
+    ]  # fmt: skip
+    if not pairs or {"input_angle", "output_angle"} <= set(record.names):
+        return
+    names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in pairs[0]]
+    times, correlation = _times_as_fast(record, *pairs[0])
+    if not times:
+        return
+    factor = times / abs(ratio)
+    off, limit = max(factor, 1.0 / factor), MAX_RATIO_FACTOR / correlation  # noise of one motion changes it by 1 / correlation
+    units = [
+        as_option("unit", name, unit)
+        for channel, name, too_large in zip(pairs[0], names, (factor, 1.0 / factor), strict=True)
+        for unit in USUAL_UNITS[channel[-5:]]
+        if abs(_own_size(file, channel) / too_large / convert(1.0, unit, USUAL_UNITS[channel[-5:]][0]) - 1.0) < MAX_OFF_UNIT
+    ]
+    is_reflected = f"reflected_{pairs[0][0][-5:]}" in file.columns
+    ways = [f"the unit: {' or '.join(units)}"] if units else []
+    if not is_reflected and abs(times - 1.0) < MAX_OFF_UNIT:
+        ways.append(f"{names[0]} is already divided by the ratio: --column reflected_{pairs[0][0][-5:]}={names[0]}")
+    elif not is_reflected:
+        ways.append(f"the ratio of the gear, with a belt or pulley before it: --constant ratio={times:.4g}")
+    yield Check(
+        "motions of both shafts", file.path.name, off, limit, "1", off > limit,
+        f"by {names[0]} and {names[1]} the input turns {times:.4g} times as fast as the output, the gear has a ratio of "
+        f"{abs(ratio):.6g}",
+        f"one of these is wrong: {'; '.join([*ways, 'the side of one of them, or the time'])}",
+    )  # fmt: skip
+
+
+def _times_as_fast(record: Recording, of_input: str, of_output: str) -> tuple[float, float]:
+    """Return how many times as fast the input turns as the output, and the correlation of their motions; 0 and 0 if none."""
+    for parts in PARTS_OF_RECORD:
+        if of_input.endswith("angle"):
+            fast, slow = slopes_and_speeds(record[of_input], record[of_output], record.time, parts)
+        elif of_output.endswith("angle"):
+            slow, fast = slopes_and_speeds(record[of_output], record[of_input], record.time, parts)
+        else:
+            fast, slow = record[of_input], record[of_output]
+        squares = float(fast @ fast), float(slow @ slow)
+        if min(squares) > 0.0 and (explained := float(fast @ slow) ** 2 / (squares[0] * squares[1])) > MIN_EXPLAINED:
+            return float(np.sqrt(squares[0] / squares[1])), float(np.sqrt(explained))
+    return 0.0, 0.0
 
 
 def _own_size(file: Recognised, channel: str) -> float:
@@ -376,7 +437,7 @@ def _coarser(recording: Recording, column: str) -> Recording:
     angle = np.unwrap(recording.values("output_angle", "rad"))
     step = np.abs(np.diff(angle))
     usual = float(np.median(step[step > 0.0])) if np.any(step > 0.0) else np.inf
-    period = np.pi / (RATIOS[-1] * usual)  # of the main line, in rows
+    period = np.pi / (STRAIN_WAVE_RATIOS[-1] * usual)  # of the main line, in rows
     every = max(1, min(int(period / MIN_ROWS_PER_PERIOD), len(angle) // MAX_ROWS_OF_RIPPLE))
     rows = min(len(angle) // every, MAX_ROWS_OF_RIPPLE) * every
     names = [name for name in ("time", "output_angle", column) if name in recording]
@@ -404,7 +465,7 @@ def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array
     sign = np.sign(speed)
     friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
     series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])
-    columns = motion.filtered(motion.late(series, delay)[0] if delay else series).T
+    columns = motion.filtered(late(series, delay, motion.step)[0] if delay else series).T
     measured = log.measured[0]
     return np.asarray((measured - columns @ solved(columns, measured)) ** 2)
 

@@ -9,19 +9,21 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
-from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
-from strainwave.identification.candidates.ripple import is_one_wave
-from strainwave.identification.candidates.rotor import (
+from strainwave.identification.candidates.motion_candidate import (
     SHARE_OF_UNKNOWN_ROTOR,
+    MotionCandidate,
+    confirmed,
     inertia_at_input,
+    other_laws,
+    refit,
     slopes_by_rotor,
+    spread_by_blocks,
+    spread_by_models,
     with_rotor,
 )
+from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
@@ -29,6 +31,7 @@ from strainwave.identification.checks.logs import (
     RATIO_OF_ENCODERS,
     checks_of_motion,
     held_out_error,
+    motions_of_both_shafts,
     ratio_of_encoders,
     speed_against_angle,
     speed_of_another_clock,
@@ -39,7 +42,7 @@ from strainwave.identification.checks.sizes import friction_of_log, input_speed
 from strainwave.identification.checks.unexplained import Judged, judged_shape
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, turnover_speed
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, transmitted_torque, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
@@ -139,7 +142,13 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
             sliding(best.fit.parts[0].model), start.friction_input, speed, log.effort, name, ratio=ratio,
             column=file.columns[log.effort], constant=file.constants.get("torque_constant", 0.0),
         )  # fmt: skip
-    checks += [*unit_of_torque(file), *speed_against_angle(file), input_speed(speed, name), *_given_inertia(prepared, name)]
+    checks += [
+        *unit_of_torque(file),
+        *speed_against_angle(file),
+        *motions_of_both_shafts(file, ratio),
+        input_speed(speed, name),
+        *_given_inertia(prepared, name),
+    ]
     constant = float(getattr(prepared.drive.motor, "torque_constant", 0.0))
     if not in_current and constant > 0.0:
         at_rows = np.interp(recording.time, prepared.log.motion.time, prepared.log.motion.speed)

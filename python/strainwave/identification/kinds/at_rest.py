@@ -11,13 +11,12 @@ from strainwave import friction
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
 from strainwave.identification.checks.sizes import MIN_RATIO
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed, needed_effort
 from strainwave.identification.results.file_result import BREAKAWAY_PATH, COULOMB_PATH, FileEstimate
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.parameters import plain

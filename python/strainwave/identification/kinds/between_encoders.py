@@ -11,16 +11,15 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, hysteresis, loads, stiffness, structure
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
+from strainwave.identification.candidates.motion_candidate import MotionCandidate, spread_by_blocks
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
-from strainwave.identification.experiments.driven_log import DrivenLog
+from strainwave.identification.experiments.drive_log import DrivenLog
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.file_result import (
     GRAVITY_PATH,

@@ -8,11 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
+from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque, breakaways
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import breakaways
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.at_rest import (
     AtRest,
     angle_and_effort,
@@ -21,12 +20,10 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
     with_breakaway,
 )
-from strainwave.identification.reading.angles import jumps
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import MAX_SPEED_AT_REST, runs_of
+from strainwave.identification.reading.motion import MAX_SPEED_AT_REST, jumps, runs_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import first
+from strainwave.identification.reading.roles import Column, first
 from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.residuals import rms

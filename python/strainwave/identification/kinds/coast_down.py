@@ -11,11 +11,10 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, rotor_sigma
 from strainwave.questions import Answer, QuestionError

@@ -15,25 +15,29 @@ from strainwave import friction
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import sliding_squares
-from strainwave.identification.candidates.position import FULL_TURN, PositionFit, fit_position
+from strainwave.identification.candidates.steady_friction import (
+    FULL_TURN,
+    Levels,
+    PositionFit,
+    constant_speeds,
+    fit_position,
+    levels_of,
+)
 from strainwave.identification.checks.sizes import opposes_motion
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.experiments.motion import integrated
-from strainwave.identification.experiments.steady_motion import Levels, constant_speeds, levels_of
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import stretches
+from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, measured
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED, pair
+from strainwave.identification.reading.roles import MIN_MOTOR_SPEED, Column, ColumnRoles, channels, measured, pair
 from strainwave.identification.results.file_result import MAX_UNEXPLAINED, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio, with_torque
 from strainwave.identification.results.identifiability import with_friction_at

@@ -25,12 +25,19 @@ from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import stretches
+from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
-from strainwave.identification.reading.sides import pair, side_of_table
+from strainwave.identification.reading.roles import (
+    Column,
+    ColumnRoles,
+    first,
+    measured,
+    needed,
+    needed_effort,
+    pair,
+    side_of_table,
+)
 from strainwave.identification.results.file_result import FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.identifiability import JudgedFit, with_friction_at

@@ -13,10 +13,9 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import check_ratings
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds import KINDS, kind_named
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles
+from strainwave.identification.reading.roles import Column, ColumnRoles
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction

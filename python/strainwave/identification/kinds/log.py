@@ -16,13 +16,18 @@ from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.torsion_loop import is_loaded_spring, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of, put
-from strainwave.identification.reading.sides import (
+from strainwave.identification.reading.roles import (
     MIN_FACTOR_OF_SIDES,
+    Column,
+    ColumnRoles,
+    channels,
+    commanded,
+    measured,
+    names_of,
+    put,
     side_of_motion,
     side_of_torque,
     sides_of_angles,

@@ -7,12 +7,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, commanded, measured, names_of
-from strainwave.identification.reading.sides import pair
+from strainwave.identification.reading.roles import Column, ColumnRoles, commanded, measured, names_of, pair
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.orders.positioning import Positioning, positioning

@@ -13,9 +13,8 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.entries import OPPOSITE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.plain import along_best_motion, fit_plain
-from strainwave.identification.candidates.torque_place import TorquePlace, torque_place
-from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
+from strainwave.identification.candidates.coupling import are_numbers, coupled, in_order
+from strainwave.identification.candidates.plain import TorquePlace, along_best_motion, fit_plain, torque_place
 from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import PreslidingCandidate, fit_presliding
+from strainwave.identification.candidates.presliding import PreslidingCandidate, PreslidingLoop, fit_presliding
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
     BRISTLE_LAWS,
     SLIDING_LAWS,
@@ -23,9 +22,9 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
 )
 from strainwave.identification.kinds.kind import Ranked
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
+from strainwave.identification.reading.roles import Column
 from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.pictures import Picture

@@ -9,17 +9,16 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.drive_log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.checks.unexplained import causes, explained, unexplained
-from strainwave.identification.dynamics.log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import InfluenceOfKept, influence
 from strainwave.identification.kinds.kind import Kind, exceeded, thinned, unused
 from strainwave.identification.kinds.log import put_sided
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
 from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit

@@ -12,11 +12,10 @@ from strainwave.files.units import convert
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.kinds.at_rest import with_breakaway
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import is_at_rest
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, first, measured, needed
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, first, measured, needed
 from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.linear_fit import linear_fit

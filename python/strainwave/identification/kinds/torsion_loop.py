@@ -20,12 +20,10 @@ from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
-from strainwave.identification.reading.channels import Channel
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, measured, needed
-from strainwave.identification.reading.sides import pair
+from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit

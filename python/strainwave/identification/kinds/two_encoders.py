@@ -10,15 +10,13 @@ from numpy.typing import NDArray
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
-from strainwave.identification.reading.sides import pair, sides_of_angles
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of, pair, sides_of_angles
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar
 from strainwave.identification.results.pictures import Picture
-from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
+from strainwave.orders.two_encoders import WHY_AMPLITUDES_CHANGE, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
 
 Array = NDArray[np.float64]
@@ -85,7 +83,7 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
 
 def _why(found: TransmissionError) -> str:
     """Return why amplitudes are not those of the gear alone; empty if they are."""
-    return f"amplitudes are those measured at {found.speeds}: {CHANGING}" if found.vibrates else ""
+    return f"amplitudes are those measured at {found.speeds}: {WHY_AMPLITUDES_CHANGE}" if found.vibrates else ""
 
 
 def curves_of_orders(found: TransmissionError) -> Recording:

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import QuestionError
 

@@ -9,10 +9,9 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.steady_friction import MIN_MOVING_SPEED, Warming, friction_over_temperature
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
-from strainwave.identification.candidates.warming import Warming, friction_over_temperature
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
-from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar

@@ -17,8 +17,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
-from strainwave.identification.candidates.plain import from_motion_to_motion
-from strainwave.identification.candidates.torque_place import frictionless
+from strainwave.identification.candidates.plain import frictionless, from_motion_to_motion
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, drive_of

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from strainwave import friction
 from strainwave.files.entries import Entry
 from strainwave.identification.candidates.friction import STEADY_NUMBERS
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import Fit, solved_problem, with_priors
 from strainwave.identification.fitting.influence import InfluenceOfKept
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, is_uncertain
 from strainwave.identification.results.gear_so_far import START_SPREAD, GearSoFar
 from strainwave.identification.results.steady_friction import sizes_of

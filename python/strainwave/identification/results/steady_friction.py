@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core
 from strainwave._core import Gear
-from strainwave.identification.candidates.elastic import transmitted_torque
 from strainwave.identification.experiments.friction_table import FRICTIONLESS, FrictionTable
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import MotionLog, transmitted_torque
 from strainwave.identification.results.file_result import TOO_UNCERTAIN, FileEstimate, FileResult, is_uncertain
 from strainwave.statistics.scale import ONE_SIGMA, student
 

@@ -11,6 +11,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.logs import (
     held_out_error,
     inertias_of_load,
+    motions_of_both_shafts,
     ratio_by_orders,
     ratio_of_encoders,
     speed_against_angle,
@@ -111,6 +112,56 @@ def test_a_speed_twice_the_slope_of_its_angle_is_no_other_unit(tmp_path: Path) -
     assert not any(check.failed for check in speed_against_angle(file))
     (remark,) = speed_of_another_clock(file)
     assert "which no unit makes" in remark
+
+
+@pytest.mark.parametrize(("scale", "told"), [(1.0, ""), (1.0 / RATIO, "reflected_"), (1.5, "--constant ratio=1")])
+@pytest.mark.parametrize("motions", [("angle", "speed"), ("speed", "angle"), ("speed", "speed")])
+def test_a_motion_of_one_shaft_contradicts_one_of_the_other(
+    tmp_path: Path, motions: tuple[str, str], scale: float, told: str
+) -> None:
+    """The motor's motion is recorded right, divided by the ratio, or that of another ratio. No shaft has angle and speed."""
+    path, series, units = tmp_path / "log.csv", {"angle": ANGLE, "speed": SPEED}, {"angle": "rad", "speed": "rad/s"}
+    columns = [TIME, scale * RATIO * series[motions[0]], series[motions[1]], 0.8 * torque(TRUTH)]
+    header = f"t [s],{motions[0]}_motor [{units[motions[0]]}],{motions[1]}_link [{units[motions[1]]}],tau [N.m]"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="")
+    (check,) = motions_of_both_shafts(recognise(path).at_ratio(RATIO), RATIO)
+    is_reflected = motions == ("speed", "speed") and told == "reflected_"  # recognised by its numbers
+    assert check.failed == (bool(told) and not is_reflected)
+    times = float(check.message.partition("the input turns ")[2].partition(" ")[0])
+    assert times == pytest.approx(abs(RATIO if is_reflected else scale * RATIO), rel=1e-3)
+    assert check.message.endswith("the gear has a ratio of 80")
+    assert is_reflected or told in check.remedy
+
+
+def test_a_unit_that_reconciles_both_shafts_is_named(tmp_path: Path) -> None:
+    """The speed of the motor is in 1/min, and stated in rad/s."""
+    path = tmp_path / "log.csv"
+    columns = [TIME, 30.0 / np.pi * RATIO * SPEED, ANGLE, 0.8 * torque(TRUTH)]
+    header = "t [s],speed_motor [rad/s],angle_link [rad],tau [N.m]"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="")
+    (check,) = motions_of_both_shafts(recognise(path), RATIO)
+    assert check.failed
+    assert "--unit speed_motor=rpm" in check.remedy
+
+
+def test_two_encoders_have_a_check_of_their_own(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    header = "t [s],angle_motor [rad],angle_link [rad],speed_link [rad/s],tau [N.m]"
+    columns = [TIME, 0.5 * RATIO * ANGLE, ANGLE, SPEED, 0.8 * torque(TRUTH)]
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="")
+    assert list(motions_of_both_shafts(recognise(path), RATIO)) == []
+
+
+def test_noise_of_one_motion_is_no_contradiction(tmp_path: Path) -> None:
+    """A differentiated encoder scatters as much as its shaft moves."""
+    path = tmp_path / "log.csv"
+    noisy = SPEED + 0.9 * np.std(SPEED) * np.random.default_rng(1).standard_normal(len(TIME))
+    columns = [TIME, RATIO * SPEED, noisy, 0.8 * torque(TRUTH)]
+    header = "t [s],speed_motor [rad/s],speed_link [rad/s],tau [N.m]"
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="")
+    (check,) = motions_of_both_shafts(recognise(path), RATIO)
+    assert not check.failed
+    assert check.value > 1.2
 
 
 def failed(recording: sw.Recording, start: str = "hfuc-20-80") -> dict[str, str]:
