@@ -16,17 +16,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
 from strainwave.files.budget import MAX_DEPTH, RefusedFile, read_regular
-from strainwave.files.described import (
-    ParameterField,
-    PartField,
-    all_paths,
-    default_of,
-    optional,
-    origin_lines,
-    own_paths,
-    parameters,
-    parts,
-)
+from strainwave.files.described import ParameterField, PartField, all_paths, default_of, optional, own_paths, parameters, parts
 from strainwave.files.entries import (
     MAX_ELEMENTS,
     NOT_GIVEN,
@@ -37,6 +27,7 @@ from strainwave.files.entries import (
     elements,
     entry_schema,
     inline,
+    origin_lines,
     schema,
 )
 from strainwave.files.identified_tables import (
