@@ -47,8 +47,8 @@ def percent(share: float) -> str:
         f"the gravity of the load is more than {comparisons.MAX_GRAVITY_OF_RATING:g} times the largest torque in the ratings",
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.GAIN_SIGMA)} for the gain of two sensors",
-        f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
-        f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
+        f"increased by {percent(comparisons.RUN_TO_RUN_SPREADS['friction_input'])} of friction at the input, "
+        f"{percent(comparisons.RUN_TO_RUN_SPREADS['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
         f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - motion_model.MIN_OWN_SHARE**2), 3))} move the other way",
         f"a probability of {percent(motion_model.MAX_CHANCE)} at most",

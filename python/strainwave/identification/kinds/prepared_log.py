@@ -24,7 +24,7 @@ from strainwave.messages import listed
 from strainwave.questions import Answer, QuestionError
 
 RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
-UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
+UNUSED_CONSTANTS = {"speed", "temperature"}  # constants that a log is not fitted with
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +141,7 @@ def _joint(file: Recognised) -> str:
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
     """Return the drive of a log, with the motor of the set or of the mapping; remarks; and True if torques are in A."""
     constants, remarks, gear = file.constants, list[str](), gear_set.gear
-    if unused := sorted(constants.keys() & UNUSED):
+    if unused := sorted(constants.keys() & UNUSED_CONSTANTS):
         remarks.append(f"given, but not used of a log: {listed(unused)}")
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))
