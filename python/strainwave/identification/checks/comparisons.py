@@ -31,7 +31,7 @@ from strainwave.messages import listed
 from strainwave.typeset import percent
 
 AGREEMENT = "agreement of files"  # name of the check of two files
-SCALE = "torques of two files"  # likewise, of all their torques together
+SCALE_OF_TORQUES = "torques of two files"  # likewise, of all their torques together
 LOAD_PATHS = (LOAD_INERTIA, GRAVITY_PATH)
 MAX_CHANCE_OF_START_SET = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
@@ -39,7 +39,7 @@ SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a fil
 MAX_PARAMETERS_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
-REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
+RUN_TO_RUN_SPREADS = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
 
 
@@ -170,7 +170,7 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
         is_one = bool(np.all(np.abs(off - factor) < MAX_DISTANCE * sigma))
         if differs and is_one:
             yield Check(
-                SCALE, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
+                SCALE_OF_TORQUES, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
                 f"{listed(path for path, *_ in pairs)} of the first are all {float(np.exp(factor)):.4g} times those of the "
                 "second: another load changes no friction, and another temperature no load",
                 "see whether torque constant, current scale and unit are the same in both files",
@@ -238,7 +238,7 @@ def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, File
 
 def repeatability(path: str) -> float:
     """Return the relative standard deviation of a parameter from run to run of one gear, by its path."""
-    return REPEATABILITY.get(path.removeprefix("gear.").partition(".")[0], GAIN_SIGMA)
+    return RUN_TO_RUN_SPREADS.get(path.removeprefix("gear.").partition(".")[0], GAIN_SIGMA)
 
 
 class _Contradiction(NamedTuple):

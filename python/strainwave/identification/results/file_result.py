@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
-from strainwave.typeset import percent, quantity
+from strainwave.typeset import percent, quantity, uncertain_quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,10 +60,10 @@ class Check(Presented):
     remedy: str = ""
 
     def _headline(self) -> str:
-        return f"{self.name} of {self.source}: {typeset.quantity(self.value, self.unit)}, {self._verdict()}"
+        return f"{self.name} of {self.source}: {quantity(self.value, self.unit)}, {self._verdict()}"
 
     def _verdict(self) -> str:
-        return f"{'FAILED' if self.failed else 'passed'}, limit {typeset.quantity(self.limit, self.unit)}"
+        return f"{'FAILED' if self.failed else 'passed'}, limit {quantity(self.limit, self.unit)}"
 
 
 def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
@@ -130,8 +129,8 @@ class HeldOut(Presented):
         return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
 
     def _headline(self) -> str:
-        plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
-        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+        plain = f", plain least squares {quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
+        return f"error on data held out {quantity(self.error, self.unit)}{plain}"
 
     def _rows(self) -> Iterator[Row]:
         yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
@@ -222,7 +221,7 @@ class FileEstimate(Presented):
         return "phase" in self.path.rpartition(".")[2]
 
     def _headline(self) -> str:
-        return f"{self.label} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
+        return f"{self.label} = {uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
 
 
 @dataclass(frozen=True, eq=False)
