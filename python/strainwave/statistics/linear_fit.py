@@ -10,6 +10,7 @@ that spread is part of their standard deviation (Buckland, Burnham and Augustin,
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -103,6 +104,23 @@ def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
     size = np.where(size > 0.0, size, 1.0)
     coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR)[0]
     return np.asarray((coefficients.T / size).T)
+
+
+def rms_left_out(columns: Array, target: Array, parts: Iterable[NDArray[np.bool_]]) -> float:
+    """Return the root mean square of what least squares leave of parts of the samples, each predicted from the others.
+
+    Args:
+        columns: shape (samples, n)
+        target: shape (samples,)
+        parts: True for the samples of a part, shape (samples,)
+
+    >>> time = np.arange(8.0)
+    >>> first = time < 4.0
+    >>> rms_left_out(np.stack([np.ones(8), time], axis=1), 3.0 * time + 2.0 * first, [~first])
+    2.0
+    """
+    left = [target[part] - columns[part] @ solved(columns[~part], target[~part]) for part in parts]
+    return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
 
 
 def normal_inverse(columns: Array) -> Array:

@@ -69,7 +69,7 @@ def between_encoders(
         remarks=tuple(_remarks(found, scale, taken)),
         checks=tuple(_inertias(found, scale, estimates, taken, source)),
         pictures=(
-            *([picture_of_twist(found.fit)] if has_stiffness else []),
+            *([picture_of_twist(found.fit, "A" if taken.in_current else "N.m")] if has_stiffness else []),
             Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),
         ),
         between=found.fit,

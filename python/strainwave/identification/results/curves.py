@@ -154,8 +154,13 @@ def picture_of_friction(fit: Fit, unit: str) -> Picture:
     return Picture(Recording(columns, units), "table", "friction, at the input", "friction over speed")
 
 
-def picture_of_twist(fit: Fit) -> Picture:
-    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits."""
+def picture_of_twist(fit: Fit, unit: str) -> Picture:
+    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits.
+
+    Args:
+        fit: of the log
+        unit: of the torque, N.m, or A if the torque constant is not known
+    """
     part = fit.parts[0]
     log, gear = part.experiment, part.model.gear
     assert isinstance(log, DrivenLog)
@@ -166,7 +171,7 @@ def picture_of_twist(fit: Fit) -> Picture:
         "twist": measured - modelled.mean(),
         "modelled": modelled - modelled.mean(),
     }
-    units = {"torque": "N.m", "twist": "rad", "modelled": "rad"}
+    units = {"torque": unit, "twist": "rad", "modelled": "rad"}
     return Picture(Recording(columns, units), "loop", "twist, at the output", "twist over torque")
 
 

@@ -2,8 +2,17 @@
 
 from strainwave.identification.candidates.torsion.candidate import TorsionCandidate
 from strainwave.identification.candidates.torsion.dissipation import InputFriction, Nothing
-from strainwave.identification.candidates.torsion.folds import held_out_blocks
+from strainwave.identification.candidates.torsion.folds import held_out_blocks, plain_error
 from strainwave.identification.candidates.torsion.ranking import RankedCandidate, rank_loop
 from strainwave.identification.candidates.torsion.selection import fit_loop
 
-__all__ = ["InputFriction", "Nothing", "RankedCandidate", "TorsionCandidate", "fit_loop", "held_out_blocks", "rank_loop"]
+__all__ = [
+    "InputFriction",
+    "Nothing",
+    "RankedCandidate",
+    "TorsionCandidate",
+    "fit_loop",
+    "held_out_blocks",
+    "plain_error",
+    "rank_loop",
+]
