@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import tau
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
 
@@ -13,6 +15,8 @@ if TYPE_CHECKING:
 
     from strainwave.orders.torque_ripple import Ripple
     from strainwave.orders.two_encoders import TransmissionError
+
+MAX_DRAWN_TURNS = 6.0  # of the input: the error of a longer record is a band of one colour
 
 
 def draw_spectrum(figure: Figure, ripple: Ripple) -> None:
@@ -38,12 +42,18 @@ def draw_error(figure: Figure, error: TransmissionError) -> None:
     curves = error.curves
     timed = "time" in curves
     x = curves["time"] if timed else curves["input_angle"] / tau
-    whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
-    marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+    turns = np.abs(curves["input_angle"] - curves["input_angle"][0]) / tau
+    is_cut = bool(turns.max() > 2.0 * MAX_DRAWN_TURNS)
+    first = turns <= MAX_DRAWN_TURNS if is_cut else np.ones(len(turns), bool)
+    whole, residual = figure.subplots(2, 1, sharex=not is_cut, height_ratios=(2.0, 1.0))
+    for name, colour, label in (
+        ("transmission_error", "measured", "transmission error"),
+        ("kinematic_error", "model", "kinematic error found"),
+    ):
+        marks.curve(whole, x[first], curves[name][first], color=LIGHT[colour], linewidth=0.9, label=label)
     marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
     residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-    marks.label_axes(whole, "at the output", "rad")
+    marks.label_axes(whole, f"at the output{f', first {MAX_DRAWN_TURNS:g} turns of the input' if is_cut else ''}", "rad")
     marks.label_axes(
         residual, "left by orders and loads", "rad", "time" if timed else "revolutions of the input", "s" if timed else "1"
     )

@@ -270,7 +270,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
     if found and turns_out < MIN_ORDER_PERIODS:
-        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
+        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():
@@ -281,7 +281,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     elif found and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
-            f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
+            f"the output turns {turns_out:.2g} of a revolution: orders 2 and {near:.4g}, of the wave generator against either "
             "spline, are separated after a whole one"
         )
     return found, remarks

@@ -41,7 +41,7 @@ def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> N
     assert result.returncode == 0, result.stdout + result.stderr
     written = ["gear.toml", "numbers.csv", "report.html", "results.json"]
     assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == written
-    assert "error on data held out" in result.stdout
+    assert "error on held-out data" in result.stdout
     gear = sw.load(tmp_path / "mine" / "gear.toml")
     assert gear.friction_input.coulomb == pytest.approx(0.0208, abs=5e-4)
     assert gear.friction_input.viscous == pytest.approx(4.95e-4, rel=0.03)

@@ -24,7 +24,7 @@ from strainwave.identification.results.determined import PATH as STEADY
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
-from strainwave.typeset import percent
+from strainwave.typeset import fixed, number, percent, uncertain, unit
 
 AGREEMENT = "agreement of files"  # name of the check of two files
 SCALE = "torques of two files"  # likewise, of all their torques together
@@ -62,8 +62,9 @@ class _ComparedWithStart:
     sigma: float
 
     def __str__(self) -> str:
-        value = f"{self.estimate.path} = {self.estimate.value:.4g} ± {self.estimate.sigma:.2g} {self.estimate.unit}"
-        return f"{value} against {self.before:.4g} ± {100.0 * self.spread:.2g} % ({self.off / self.sigma:+.1f} σ)"
+        words = f"{uncertain(self.estimate.value, self.estimate.sigma)} {unit(self.estimate.unit)}"
+        apart = f"{fixed(abs(self.off) / self.sigma, 1)} σ {'above' if self.off > 0.0 else 'below'}"
+        return f"{self.estimate.path} = {words}, {apart} {number(self.before, 4)} ± {percent(self.spread)}"
 
 
 def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
@@ -236,7 +237,7 @@ def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     """Return in words how a number of a load differs from that of another log; empty if it does not."""
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
         shows = reference.path == GRAVITY and reference.value > MAX_DISTANCE * reference.sigma
-        return f"no {GRAVITY} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+        return f"no {GRAVITY} against {uncertain(reference.value, reference.sigma)} {unit(reference.unit)}" if shows else ""
     found = _contradiction(estimate, reference)
     return found.words if estimate.unit == reference.unit and found.apart > MAX_DISTANCE else ""
 
@@ -299,9 +300,11 @@ def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     off, usual, size = abs(difference(one, other)), max(float(np.hypot(spread, sigma)), 1e-300), abs(best.value)
     as_share = size > 0.0 and not best.is_phase
-    differ, may = (percent(each / size) if as_share else f"{each:.2g} {best.unit}" for each in (off, MAX_DISTANCE * usual))
+    differ, may = (
+        percent(each / size) if as_share else f"{number(each, 2)} {unit(best.unit)}" for each in (off, MAX_DISTANCE * usual)
+    )
     words = (
-        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}: they "
-        f"differ by {differ}; runs of one gear differ by up to {may}"
+        f"{one.label} = {uncertain(one.value, one.sigma)} against {uncertain(other.value, other.sigma)} {unit(one.unit)}: "
+        f"they differ by {differ}; runs of one gear differ by up to {may}"
     )
     return _Contradiction(words, off / usual, best.path, one.sigma <= other.sigma)

@@ -292,7 +292,7 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
     torque = "A" if taken.in_current else "N·m"
     of = "gravity" if scale.path == GRAVITY else "inertia of the load"
     yield (
-        f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
+        f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on held-out data. "
         f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not determined. Torques count from "
         f"the {of}"
     )

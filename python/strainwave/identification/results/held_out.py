@@ -11,14 +11,14 @@ from strainwave import typeset
 from strainwave.presentation import Presented, Row
 from strainwave.typeset import percent, quantity
 
-MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
+MAX_UNEXPLAINED = 0.5  # of the signal on held-out data: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
 MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
-MAX_IN_BAND = 0.01  # of what varies in the pass band
+MAX_IN_BAND = 0.01  # of the signal in the pass band
 
 
 def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
-    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of what varies.
+    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of the signal.
 
     Args:
         error: root mean square of measured less predicted
@@ -27,10 +27,10 @@ def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan
         plain: what plain least squares leaves; not a number without
 
     >>> error_in_words(0.147, "A", 1.79, 0.185), error_in_words(8.3e-3, "N.m", 0.054)
-    ('0.147 A (plain least squares 0.185 A), 8.2 % of what varies', '8.3 mN·m, 15 % of what varies')
+    ('0.147 A (plain least squares 0.185 A), 8.2 % of the signal', '8.3 mN·m, 15 % of the signal')
     """
     beside = f" (plain least squares {quantity(plain, unit)})" if np.isfinite(plain) else ""
-    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of what varies' if varies > 0.0 else ''}"
+    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of the signal' if varies > 0.0 else ''}"
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,10 @@ class HeldOut(Presented):
 
     def _headline(self) -> str:
         plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
-        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+        return f"error on held-out data {typeset.quantity(self.error, self.unit)}{plain}"
 
     def _rows(self) -> Iterator[Row]:
-        yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
+        yield Row("error on held-out data", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
         if np.isfinite(self.plain):
             yield Row("error of plain least squares", self.plain, self.unit)
         yield Row("error of the mean", self.zero, self.unit)
