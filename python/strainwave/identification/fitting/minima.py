@@ -15,6 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, solved_from, solved_problem
 from strainwave.messages import listed
 from strainwave.presentation import Pictured, Presented, Row
+from strainwave.progress import Progress, in_turn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -107,7 +108,7 @@ class Minima(ComparedByFields, Pictured):
         return listed([f"{path} = {value:.5g} {self.units[path]}" for path, value in end.values.items()])
 
 
-def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima:
+def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0, progress: Progress = None) -> Minima:
     """Return the minima at which a fit with other initial values ends.
 
     Each free parameter starts at up to twice or half of its estimate, at random. A drive that vibrates has a minimum at each
@@ -118,6 +119,7 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
         found: result of `fit`
         starts: count of other initial values; each takes about as long as the fit did
         seed: of the random numbers
+        progress: as of `sw.simulate`
 
     Returns:
         The best fit, and each minimum with the number of starts that ended there.
@@ -143,11 +145,13 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
     problem, given = solved_problem(found)
     unknowns, weights = found.plan.unknowns, problem.weights(given)
     reached = [given]
-    for _ in range(starts):
-        start = given.copy()
-        start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
-        with suppress(ValueError, FloatingPointError):  # a model that is not valid there
-            reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_TRIALS))
+    with in_turn(progress, starts) as turn:
+        for number in range(starts):
+            turn(f"start {number + 1}")
+            start = given.copy()
+            start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
+            with suppress(ValueError, FloatingPointError):  # a model that is not valid there
+                reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_TRIALS))
     costs = [problem.cost(x, weights) for x in reached]
     lower = min(costs) < costs[0] - 1.0  # a standard deviation
     best = found

@@ -14,6 +14,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, Fit, solved_problem
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Pictured, Row
+from strainwave.progress import Progress, in_turn
 from strainwave.statistics.student import ONE_SIGMA, student
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class Profile(ComparedByFields, Pictured):
         )
 
 
-def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
+def profile(found: Fit, path: str, *, confidence: float = 0.95, progress: Progress = None) -> Profile:
     """Return the profile likelihood of one unknown of a fit: held at one value after the other, with all others fitted anew.
 
     The interval of an estimate takes the model to be linear. This one need not be symmetric, and shows to which side the data
@@ -97,6 +98,7 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
         found: result of `fit`
         path: of a free parameter, or an unknown of the measurement, as the estimates name it
         confidence: of the interval
+        progress: as of `sw.simulate`
 
     Returns:
         The values tried [unit of the parameter] and the cost at each, shape (n,), and the interval.
@@ -154,8 +156,11 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
 
         return _search(distance, estimate.value, estimate.sigma, end, float(np.sqrt(limit)), abs(estimate.start))
 
-    below, of_below, first, open_below = towards(low)
-    above, of_above, second, open_above = towards(high)
+    with in_turn(progress, 2) as turn:
+        turn(f"{path}, smaller")
+        below, of_below, first, open_below = towards(low)
+        turn(f"{path}, larger")
+        above, of_above, second, open_above = towards(high)
     values = np.array([*below, estimate.value, *above])
     cost = np.array([*of_below, 0.0, *of_above])
     order = np.argsort(values)
