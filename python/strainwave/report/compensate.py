@@ -187,7 +187,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
         "compensate.html.jinja",
         {
             "name": found.gear_set.name,
-            "verdict": found.verdict,
+            "verdict": found.verdict.replace(" %", f"{NO_BREAK_SPACE}%"),
             "figure": figure,
             "cascade": found.baseline.candidate.name,
             "rows": [

@@ -27,7 +27,6 @@ from strainwave.identification.results.file_result import FileEstimate, FileResu
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
 from strainwave.messages import listed
-from strainwave.presentation import PLAIN_DIGITS
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows
 from strainwave.report.first_screen import next_commands, not_determined, numbers_by_source, pictures
@@ -287,7 +286,7 @@ def _kept(found: Identified) -> dict[str, list[tuple[str, str]]]:
     for each in found.states:
         if each.state == "kept" and not each.why.endswith(NOT_GIVEN):
             why = each.why.removeprefix(f"{UNDETERMINED}; ") or "as in the start set"
-            kept.setdefault(why, []).append((each.path, f"{number(each.value, PLAIN_DIGITS)} {unit(each.unit)}".strip()))
+            kept.setdefault(why, []).append((each.path, f"{number(each.value)} {unit(each.unit)}".strip()))
     return kept
 
 
