@@ -19,10 +19,9 @@ from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.files.recording import Recording
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
-from strainwave.orders.pictures import draw_error, draw_spectrum
 from strainwave.orders.run_up import RunUp
-from strainwave.orders.torque_ripple import Ripple
-from strainwave.orders.two_encoders import TransmissionError
+from strainwave.orders.torque_ripple import Ripple, draw_spectrum
+from strainwave.orders.two_encoders import TransmissionError, draw_error
 from strainwave.presentation import PAGE_WIDTH
 from strainwave.report import figures
 from strainwave.report.page import render
