@@ -30,6 +30,7 @@ MIN_NOTE_WIDTH = 24  # characters; a note with less room stands below its row
 MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
 PLAIN_DIGITS = 5  # of a number without a standard deviation
+COUNT_DIGITS = 9  # of a whole number without a unit, as the counts of an encoder
 FIELDS_BESIDE_ROWS = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
 _ATTRIBUTE = re.compile(r"^ {8}(\w[\w, ]*): (.*(?:\n {12}.*)*)", re.MULTILINE)  # of a docstring
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
@@ -314,6 +315,8 @@ def number_text(row: Row) -> str:
 
     >>> number_text(Row("k1", 31234.0, "N.m/rad", 870.0)), number_text(Row("speed", (0.0, 2.5))), number_text(Row("time", None))
     ('31230 ± 870', '0 to 2.5', '—')
+    >>> number_text(Row("counts", 131072.0)), number_text(Row("k1", 131072.0, "N.m/rad"))
+    ('131072', '131070')
     """
     value = row.value
     if isinstance(value, bool):
@@ -324,7 +327,10 @@ def number_text(row: Row) -> str:
         return value or "—"
     if isnan(value):
         return "—"
-    return typeset.uncertain(value, row.sigma) if row.sigma >= 0.0 else typeset.number(value, PLAIN_DIGITS)
+    if row.sigma >= 0.0:
+        return typeset.uncertain(value, row.sigma)
+    is_count = row.unit in ("", "1") and float(value).is_integer()
+    return typeset.number(value, COUNT_DIGITS if is_count else PLAIN_DIGITS)
 
 
 def in_one_line(rows: Iterable[Row]) -> str:

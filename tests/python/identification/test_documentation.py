@@ -33,8 +33,8 @@ def percent(share: float) -> str:
         f"differ by more than {NUMBERS[int(combined_parameter.MAX_DISTANCE)]} standard deviations",
         f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
-        f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
-        f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of what varies",
+        f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on held-out data",
+        f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of the signal",
         f"White noise repeats as well in 1 of {1.0 / unexplained.MAX_CHANCE_OF_SHAPE:g} records",
         f"A shape of {100.0 * unexplained.MIN_SHARE_OF_SHAPE:g} to {percent(unexplained.MAX_SHARE_OF_SHAPE)} is a remark",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",

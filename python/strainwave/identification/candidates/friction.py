@@ -26,6 +26,7 @@ from strainwave.identification.candidates.steady_shapes import (
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
 from strainwave.identification.fitting.unknowns import Estimate, plan
+from strainwave.statistics.linear_fit import rms_left_out
 from strainwave.statistics.residuals import chance_of_gain
 from strainwave.statistics.scale import robust_sigma
 
@@ -352,13 +353,30 @@ def _kept(found: Any, known: Plain, fell: bool) -> Any:
     return law
 
 
+def parts_of(table: FrictionTable) -> list[NDArray[np.bool_]]:
+    """Return the rows of each part of a table that is predicted from the others."""
+    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
+    return [fold == part for part in np.unique(fold)]
+
+
+def plain_error(table: FrictionTable, trusted: NDArray[np.bool_]) -> float:
+    """Return the error of Coulomb and viscous friction by least squares, where each part is predicted from the others [N.m].
+
+    With both directions a zero error of the torque is among the unknowns, with loads a loss in proportion to them. Outliers are
+    left out, as from the error of a candidate.
+    """
+    table = _rows(table, trusted)
+    way = np.sign(table.speed)
+    both_ways = [np.ones(len(way))] if np.ptp(way) else []
+    loss = [] if table.load is None else [way * np.abs(table.load)]
+    return rms_left_out(np.stack([way, table.speed, *both_ways, *loss], axis=1), table.torque, parts_of(table))
+
+
 def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandidate:
     start = gear.replace(friction_input=shape.law, friction_mesh=shape.mesh or gear.friction_mesh)
     whole = fit(start, table, shape.paths, ties=shape.followers)
-    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
     held_out, asked = np.empty(len(table.speed)), plan(whole.gear, [""], shape.paths, ties=shape.followers)
-    for part in np.unique(fold):
-        left_out = fold == part
+    for left_out in parts_of(table):
         problem = problem_of(asked, whole.gear, [table], [~left_out])  # of one channel: its weight changes nothing
         x = problem.solve(problem.start(), problem.first_weights(), EXACT_TOLERANCE)
         ((predicted, _),) = problem.predict(x)

@@ -28,7 +28,7 @@ from strainwave.identification.results.file_result import (
 )
 from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
-from strainwave.typeset import percent
+from strainwave.typeset import fixed, number, percent, uncertain, unit
 
 AGREEMENT = "agreement of files"  # name of the check of two files
 SCALE_OF_TORQUES = "torques of two files"  # likewise, of all their torques together
@@ -101,8 +101,9 @@ def _off_start(start: GearSet, parameters: Sequence[CombinedParameter]) -> Itera
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
         off = float(np.log(estimate.value / before)) / sigma
-        value = f"{estimate.path} = {estimate.value:.4g} ± {estimate.sigma:.2g} {estimate.unit}"
-        yield each.source, off, f"{value} against {before:.4g} ± {100.0 * spread:.2g} % ({off:+.1f} σ)"
+        value = f"{estimate.path} = {uncertain(estimate.value, estimate.sigma)} {unit(estimate.unit)}"
+        apart = f"{fixed(abs(off), 1)} σ {'above' if off > 0.0 else 'below'}"
+        yield each.source, off, f"{value}, {apart} {number(before, 4)} ± {percent(spread)}"
 
 
 def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float]:
@@ -211,7 +212,8 @@ def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     """Return in words how a number of a load differs from that of another log; empty if it does not."""
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
         shows = reference.path == GRAVITY_PATH and reference.value > MAX_DISTANCE * reference.sigma
-        return f"no {GRAVITY_PATH} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+        words = f"{uncertain(reference.value, reference.sigma)} {unit(reference.unit)}"
+        return f"no {GRAVITY_PATH} against {words}" if shows else ""
     difference_of_loads = _contradiction(estimate, reference)
     return difference_of_loads.words if estimate.unit == reference.unit and difference_of_loads.apart > MAX_DISTANCE else ""
 
@@ -274,9 +276,11 @@ def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     off, usual, size = abs(difference(one, other)), max(float(np.hypot(spread, sigma)), 1e-300), abs(best.value)
     as_share = size > 0.0 and not best.is_phase
-    differ, may = (percent(each / size) if as_share else f"{each:.2g} {best.unit}" for each in (off, MAX_DISTANCE * usual))
+    differ, may = (
+        percent(each / size) if as_share else f"{number(each, 2)} {unit(best.unit)}" for each in (off, MAX_DISTANCE * usual)
+    )
     words = (
-        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}: they "
-        f"differ by {differ}; runs of one gear differ by up to {may}"
+        f"{one.label} = {uncertain(one.value, one.sigma)} against {uncertain(other.value, other.sigma)} {unit(one.unit)}: "
+        f"they differ by {differ}; runs of one gear differ by up to {may}"
     )
     return _Contradiction(words, off / usual, best.path, one.sigma <= other.sigma)

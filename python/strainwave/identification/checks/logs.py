@@ -82,7 +82,7 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         others = f"the motion of joints {listed(joints)} is known, but the record may be too short for the torque that they add"
     unit = held_out.unit
     yield Check(
-        "unexplained on data held out", source, held_out.error, MAX_UNEXPLAINED * held_out.zero, unit,
+        "unexplained on held-out data", source, held_out.error, MAX_UNEXPLAINED * held_out.zero, unit,
         held_out.relative > MAX_UNEXPLAINED,
         f"the RMS error of {held_out.channel} on the {held_out.stretch} is {held_out.words}: more than half is unexplained",
         f"{others}; the motion may be too small or at one speed only, or columns, units or sides are not what they are "

@@ -231,7 +231,7 @@ def judged_shape(
         return Judged()
     name = max(sizes, key=lambda each: sizes[each])
     size, limit = sizes[name], MAX_SHARE_OF_SHAPE * varies
-    words = f"what the model leaves has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
+    words = f"the residual has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
     check = Check(
         SHAPE_OF_RESIDUALS, source, size, limit, unit, size > limit, words if size > limit else "",
         "look at the residual below the picture: the model lacks what it shows there, or a column is of another joint",

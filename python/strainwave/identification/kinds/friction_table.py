@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
+from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, plain_error, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
     friction_of_table,
@@ -238,7 +238,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
-            samples=len(experiment.torque),
+            plain_error(experiment, best.fit.training), samples=len(experiment.torque),
         ),
         candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
     )  # fmt: skip

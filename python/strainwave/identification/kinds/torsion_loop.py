@@ -13,7 +13,14 @@ from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
 from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import (
+    InputFriction,
+    Nothing,
+    TorsionCandidate,
+    fit_loop,
+    held_out_blocks,
+    plain_error,
+)
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import explained, judged_shape
@@ -258,7 +265,8 @@ def _held_out(best: TorsionCandidate) -> HeldOut | None:
     if not rows.any():
         return None
     error, varies = float(best.fit.rms(held_out=True)[0]), float(np.std(best.loop.torque[rows]))
-    return HeldOut("blocks of the loop", "torque", "N.m", error, varies, samples=int(rows.sum()))
+    plain = plain_error(best.loop.twist, best.loop.torque, [rows])
+    return HeldOut("blocks of the loop", "torque", "N.m", error, varies, plain, samples=int(rows.sum()))
 
 
 def _remarks(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -26,6 +26,7 @@ from strainwave.identification.candidates.torsion.dissipation import WHOLE, WITH
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN_SPRINGS, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.statistics.linear_fit import rms_left_out
 from strainwave.statistics.residuals import correlation_length
 
 LOOP_BLOCKS = 20  # of the samples of a loop
@@ -48,6 +49,18 @@ def held_out_blocks(n: int, fold: int = LOOP_FOLDS - 1) -> NDArray[np.bool_]:
     """
     training: NDArray[np.bool_] = block_of(n) % LOOP_FOLDS != fold
     return training
+
+
+def plain_error(deflection: Array, torque: Array, parts: Iterable[NDArray[np.bool_]]) -> float:
+    """Return the error of a linear spring with dry friction by least squares, each part predicted from the others [N.m].
+
+    Args:
+        deflection: angle in the order measured [rad], shape (n,)
+        torque: shape (n,)
+        parts: True for the samples of a part, shape (n,)
+    """
+    columns = np.stack([np.ones(len(deflection)), deflection, np.sign(np.gradient(deflection))], axis=1)
+    return rms_left_out(columns, torque, parts)
 
 
 def block_of(n: int) -> NDArray[np.intp]:
