@@ -136,11 +136,11 @@ def _read(content: Mapping[str, Any]) -> Rig:
             entries, keys = given[name] if isinstance(given[name], list) else [given[name]], _keys(name)
             if len(entries) != len(keys):
                 raise ValueError(f"{name} has {len(entries)} numbers; write {_camera_form().examples[name]}")
-            numbers = [_value(key, entry, unit) for key, entry, unit in zip(keys, entries, CAMERA[name], strict=True)]
-            values = tuple(number.value for number in numbers)
+            entry_units = zip(keys, entries, CAMERA[name], strict=True)
+            members_of_camera = {key: _value(key, entry, unit) for key, entry, unit in entry_units}
+            values = tuple(number.value for number in members_of_camera.values())
             camera[name] = values if len(values) > 1 else values[0]
-            sources = zip(keys, (number.source for number in numbers), strict=True)
-            camera["sources"] |= {key: source for key, source in sources if source != NOT_GIVEN}
+            camera["sources"] |= {key: each.source for key, each in members_of_camera.items() if each.source != NOT_GIVEN}
         members["camera"] = Camera(**camera)
     with at("[loading]"):
         return Rig(**members)
@@ -227,9 +227,9 @@ def _text(rig: Rig) -> str:
     if rig.masses:
         tables = tomlkit.aot()
         for masses in rig.masses:
-            table = tomlkit.table()
-            table.update({"mass": _entry(Value(masses.mass, masses.sigma, masses.source), "kg"), "count": masses.count})
-            tables.append(table)
+            row = tomlkit.table()
+            row.update({"mass": _entry(Value(masses.mass, masses.sigma, masses.source), "kg"), "count": masses.count})
+            tables.append(row)
         written.add("masses", tables)
     if camera := _written_camera(rig.camera):
         written.add("camera", camera)

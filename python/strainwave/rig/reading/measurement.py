@@ -25,8 +25,9 @@ from strainwave.rig.bench.torque import Torque, torque_of, without_compliance
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.recorded import scatter
 from strainwave.rig.running.plan import check
-from strainwave.rig.vision.angle import Angles, Frame, follow, look
+from strainwave.rig.vision.angle import Angles, follow
 from strainwave.rig.vision.camera import flat
+from strainwave.rig.vision.marker import Frame, look
 from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]

@@ -12,8 +12,9 @@ from strainwave.rig.bench.setup import Camera, Rig
 from strainwave.rig.bench.steps import FILE, Step, read_steps
 from strainwave.rig.bench.torque import torque_of_masses
 from strainwave.rig.running.guide import Look, Point
-from strainwave.rig.vision.angle import Frame, follow, look
+from strainwave.rig.vision.angle import follow
 from strainwave.rig.vision.image import by_number, pictures_in
+from strainwave.rig.vision.marker import Frame, look
 
 
 @dataclass

@@ -256,11 +256,9 @@ def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
     sights = {i: _Sight.of(frame, camera) for i, frame in enumerate(frames) if frame.markers is not None}
     if len(sights) < 3:
         return frames
-    for what, size_of in (
-        ("apart", lambda sight: sight.distance),
-        ("in radius", lambda sight: 0.5 * (sight.markers[0].radius + sight.markers[1].radius)),
-    ):
-        sizes = {i: size_of(sight) for i, sight in sights.items()}
+    distances = {i: sight.distance for i, sight in sights.items()}
+    radii = {i: 0.5 * (sight.markers[0].radius + sight.markers[1].radius) for i, sight in sights.items()}
+    for what, sizes in (("apart", distances), ("in radius", radii)):
         usual = float(np.median(list(sizes.values())))
         for i, size in sizes.items():
             if abs(size / usual - 1.0) > _MAX_RELATIVE_DIFFERENCE and not frames[i].fault:
