@@ -32,7 +32,7 @@ from strainwave.rig.analysis.regimes import NAMES, RegimeName, Segmented, cycles
 from strainwave.rig.analysis.result import Result
 from strainwave.rig.analysis.stiffness import SoftSpot, Stiffness, segments_of, soft_spots, stiffness_of
 from strainwave.rig.loop import Loop
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

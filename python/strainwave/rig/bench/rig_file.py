@@ -12,8 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
-from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
+from strainwave.files.entries import NOT_GIVEN, Entry, Form, Quantity, checked, elements, entry_schema, inline, schema
 from strainwave.files.gear_file import at, document
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted

@@ -27,7 +27,7 @@ from strainwave.presentation import Presented, Row
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
 from strainwave.rig.loop import Loop, not_negative, signed
-from strainwave.statistics.student import student
+from strainwave.statistics.scale import student
 
 Array = NDArray[np.float64]
 CONFIDENCE_LEVEL = 0.95  # probability of the intervals of a torque [1]

@@ -149,8 +149,8 @@ def simulate_test(
     gears, loadings = _loaded(gear, rig, weighed, {"wait": wait, "settling": settling, "virgin": virgin})
     if not loadings:
         raise ValueError("steps: a test needs one step or more")
-    series = ("seen", "applied", "shaft", "elastic", "twist")
-    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in series]
+    channels = ("seen", "applied", "shaft", "elastic", "twist")
+    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in channels]
     columns += [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
     test = VirtualTest(folder, tuple(recorded), *columns)
     names = ["rig.toml", "steps.csv", "truth.json", *(f"truth-{number}.toml" for number in range(1, len(gears) + 1))]

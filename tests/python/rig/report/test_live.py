@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, strategies as st
 from rich.console import Console
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.report.live import DOTS, Point, Terminal, live, loop_lines, point_line
-from strainwave.rig.running.guide import Look
+from strainwave.rig.report.live import DOTS, Terminal, live, loop_lines, point_line
+from strainwave.rig.running.guide import Look, Point
 
 POINTS = [
     Point("0001.png", 0.36, Look(0.0, 2e-5)),
