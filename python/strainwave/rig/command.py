@@ -28,7 +28,7 @@ from strainwave.rig.influence.series import analyse_series, read_series, series_
 from strainwave.rig.loop import COLUMNS
 from strainwave.rig.reading.evaluation import EvaluationOptions, evaluate_paths
 from strainwave.rig.reading.measurement import PLAN
-from strainwave.rig.report.files import evaluation_files, loop_names
+from strainwave.rig.report.files import files_of, loop_names
 from strainwave.rig.report.influence import influence_report, summary as trend_lines
 from strainwave.rig.report.live import Terminal, live
 from strainwave.rig.report.page import summary
@@ -240,7 +240,7 @@ def analyse(
         units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
     )
     found, read = evaluate_paths(paths, given)
-    files = evaluation_files(found, _provenance(read))
+    files = files_of(found, _provenance(read))
     write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))

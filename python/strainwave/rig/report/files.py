@@ -151,9 +151,9 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
     }
 
 
-def evaluation_files(found: Evaluation, provenance: Provenance) -> dict[str, str | bytes]:
+def files_of(found: Evaluation, provenance: Provenance | None = None) -> dict[str, str | bytes]:
     """Return loops and angles of a test of torsion as tables, the numbers as JSON, and the page, by file name."""
     files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-    files["results.json"] = results_json(results(found, provenance.date))
+    files["results.json"] = results_json(results(found, provenance.date if provenance else ""))
     files["report.html"] = rig_report(found, provenance, list(files))
     return files
