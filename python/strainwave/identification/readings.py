@@ -181,9 +181,6 @@ def _most_probable(
         readings: of the motion, the usual one first
         question: that is open between them; empty if there is one
         source, known, given: as of `decided`
-
-    Raises:
-        QuestionError: several are nearly as probable, or they are not compared
     """
     usual = Usual.of(known)
     by_reading = [_ways(each, known, given, usual, is_one=not question) for each in _sensible(readings)]

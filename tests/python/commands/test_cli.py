@@ -124,7 +124,7 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["identify", "hfuc-25-101", "table.csv"], ("hfuc-25-101", "hfuc-25-100")),
+        (["identify", "hfuc-25-101", "table.csv"], ("hfuc-25-101", "no ratio of 101, but 30, 50, 80, 100")),
         (["identify", "nowhere.toml", "table.csv"], ("nowhere.toml",)),
         (["identify", "hfuc-25-100", "nowhere.csv"], ("nowhere.csv",)),
         (["identify", "hfuc-25-100"], ("FILE",)),

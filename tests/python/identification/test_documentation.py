@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.candidates import motion_model
-from strainwave.identification.checks import comparisons, sizes, unexplained
+from strainwave.identification.checks import comparisons, logs, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
@@ -53,6 +53,8 @@ def percent(share: float) -> str:
         f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - motion_model.MIN_OWN_SHARE**2), 3))} move the other way",
         f"a probability of {percent(motion_model.MAX_CHANCE)} at most",
         f"uncertain by {percent(motion_model.BIAS_IN_FULL_BAND)} at least",
+        f"a recorded speed is more than {logs.MAX_SPEED_FACTOR:g} times the slope of its angle",
+        f"differs from that of the gear by a factor of more than {logs.MAX_RATIO_FACTOR:g} over their correlation",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

@@ -10,7 +10,7 @@ import numpy as np
 
 from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
-from strainwave.files.entries import OPPOSITE
+from strainwave.files.entries import OPPOSITE_SENSE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.coupling import are_numbers, coupled, in_order
@@ -83,7 +83,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     if fit_plain(log, drive).sense < 0.0:
         of_output = drive.gear.kinematics.ratio < 0.0 and log.effort != "joint_torque"
         how = "in the sense of the output, which turns against the input" if of_output else "against the motion"
-        opposite = f"{log.effort} {OPPOSITE}{log.effort} of the model"
+        opposite = f"{log.effort} {OPPOSITE_SENSE}{log.effort} of the model"
         remarks.append(f"{log.effort} is counted {how}: its sign is turned round, {opposite}")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
