@@ -10,7 +10,7 @@ from importlib import import_module
 from itertools import chain, count
 from math import isfinite, isnan, nan
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from strainwave import typeset
 from strainwave.messages import one_line, shortened
@@ -166,6 +166,7 @@ class Reported:
     """Base of results that have a report."""
 
     __slots__ = ()
+    _report_module: ClassVar[str] = "strainwave.report.files_of"  # by name, as rooms of results know nothing of reports
 
     def report(self, folder: str | Path) -> Path:
         """Write the report of the result and its files, as the command does.
@@ -183,13 +184,8 @@ class Reported:
 
         from strainwave.files.writing import write_folder
 
-        write_folder(Path(folder), self._files())
+        write_folder(Path(folder), import_module(self._report_module).files_of(self))
         return Path(folder) / "report.html"
-
-    def _files(self) -> Mapping[str, str | bytes]:
-        """Return the files of the report by name; imported by name, as the rooms of results know nothing of that of reports."""
-        files: Mapping[str, str | bytes] = import_module("strainwave.report.files_of").files_of(self)
-        return files
 
 
 # ---- Rows of a dataclass ---------------------------------------------------------------------------------------------
