@@ -64,9 +64,7 @@ def description(name: str) -> str:
     """Return the documentation of a model."""
     from inspect import cleandoc
 
-    from strainwave.report.articles import in_words
-
-    return in_words(cleandoc(str(models()[name].__doc__)))
+    return cleandoc(str(models()[name].__doc__))
 
 
 def _named(kind: str, names: Any, part: str) -> list[str]:
