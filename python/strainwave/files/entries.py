@@ -50,7 +50,7 @@ class Entry:
         check_line("source", self.source)
         for name in ("spread", "uncertainty"):
             if (number := getattr(self, name)) is not None:
-                arguments.number(name, number, brackets="[)", low=0.0)
+                arguments.bare_number(name, number, brackets="[)", low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +75,7 @@ class Quantity(Entry):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_unit(self.unit)
-        arguments.number("value", self.value, self.unit)
+        arguments.bare_number("value", self.value, self.unit)
 
     def to(self, unit: str) -> Quantity:
         """Return the quantity in another unit.

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from math import isfinite
 
 from strainwave import arguments
 from strainwave.files.entries import Quantity
-from strainwave.files.units import check
+from strainwave.files.units import base_exponents, check
 from strainwave.messages import quoted
 
 Figure = float | str | Quantity
@@ -42,20 +43,38 @@ def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
     if isinstance(given, Quantity):
         found = given
     elif isinstance(given, str):
-        found = _read(name, given, unit, source)
+        found = _read(name, given.strip().removeprefix("<").removeprefix("≤"), unit, source)
     else:
         found = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
-    try:
-        found.to(unit)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
+    _in_unit(name, found, unit)
     return found
+
+
+def number_of(name: str, text: str, unit: str) -> float:
+    """Return the number of a text with a unit, in `unit`; in SI units if that is empty, as it is for a command.
+
+    >>> number_of("torque_constant", "75 mN.m/A", "N.m/A"), round(number_of("amplitude", "90 deg", ""), 4)
+    (0.075, 1.5708)
+
+    Raises:
+        ValueError: as `quantity_of`
+    """
+    written = _read(name, text, unit or "deg", "argument")
+    base = ".".join(f"{symbol}{power}" for symbol, power in base_exponents(written.unit)[1].items())
+    return _in_unit(name, written, unit or base or "1").value
+
+
+def _in_unit(name: str, quantity: Quantity, unit: str) -> Quantity:
+    try:
+        return quantity.to(unit)
+    except ValueError as error:
+        raise ValueError(f'{name}: {error}; write it as "1.2 {unit}"') from None
 
 
 def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     if len(text) > MAX_TEXT:
         raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_TEXT}")
-    written = _WRITTEN.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
+    written = _WRITTEN.fullmatch(text.strip())
     if written is None:
         raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
     number = written["number"]
@@ -65,7 +84,10 @@ def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
     if not written["unit"] and unit != "1":
         raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
+    if not isfinite(value):
+        raise ValueError(f"{name} = {quoted(text)} must be finite")
     try:
-        return Quantity(value=value, unit=check(written["unit"] or "1"), source=source)
+        standard = check(written["unit"] or "1")
     except ValueError as error:
-        raise ValueError(f"{name} = {quoted(text)}: {error}") from None
+        raise ValueError(f'{name} = {quoted(text)}: {error}; write it as "{number} {unit}"') from None
+    return Quantity(value=value, unit=standard, source=source)

@@ -38,9 +38,9 @@ class Excitation:
         cls,
         drive: Drive,
         command: Scenario,
-        load_torque: Scenario | float = 0.0,
-        temperature: Scenario | float = ROOM_TEMPERATURE,
-        inputs: Mapping[str, Scenario | float] | None = None,
+        load_torque: Scenario | float | str = 0.0,
+        temperature: Scenario | float | str = ROOM_TEMPERATURE,
+        inputs: Mapping[str, Scenario | float | str] | None = None,
     ) -> Excitation:
         """Return the excitation for the arguments of a user; `inputs` has those that the parts of the drive take, by name."""
         if not isinstance(command, Scenario):
@@ -55,16 +55,20 @@ class Excitation:
         for each in given:
             arguments.one_of("the name of an input", each, tuple(known))
         known |= given
+        signals: dict[str, Scenario | float] = {}
         for each, signal in known.items():
-            if not isinstance(signal, Scenario | Real):
+            if not isinstance(signal, Scenario | Real | str):
                 raise TypeError(f"{each} = {shortened(signal)} must be a number or a Scenario")
-            if isinstance(signal, Scenario) and signal.duration != command.duration:
-                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
             if not isinstance(signal, Scenario):
-                arguments.number(each, signal)
-        if not isinstance(known["temperature"], Scenario):
-            check_temperature(known["temperature"])
-        return cls(command, known[name], known["temperature"])
+                unit = "K" if each == "temperature" else _core.load_input(drive)[1]
+                signals[each] = arguments.number(each, signal, unit)
+                continue
+            signals[each] = signal
+            if signal.duration != command.duration:
+                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
+        if not isinstance(signals["temperature"], Scenario):
+            check_temperature(signals["temperature"])
+        return cls(command, signals[name], signals["temperature"])
 
     @property
     def _scenarios(self) -> list[Scenario]:

@@ -15,7 +15,7 @@ from strainwave.simulation.state import State, start_of
 
 Array = NDArray[np.float64]
 Known = tuple[list[int], Array]  # the numbers of quantities, and their values, shape (quantities, members)
-Initial: TypeAlias = State | Mapping[str, float]  # what a run begins with
+Initial: TypeAlias = State | Mapping[str, float | str]  # what a run begins with
 QUANTITIES = {name: (number, unit) for number, (name, unit, _) in enumerate(_core.quantities)}
 
 
@@ -42,6 +42,9 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
 
 
 def _value(name: str, value: ArrayLike, members: int) -> Array:
+    unit = QUANTITIES[name][1] if name in QUANTITIES else ""
+    if isinstance(value, str):
+        value = arguments.number(f"initial {name}", value, unit)
     given = arguments.numbers(f"initial {name}", value)
     if given.shape not in ((), (members,)):
         each = "one value" if members == 1 else f"one value, or one for each of {members} members"

@@ -46,7 +46,7 @@ class State(Presented, Mapping[str, float]):
     def __init__(self) -> None:
         raise TypeError("a state is made by a drive's rest(), by sw.analysis.equilibrium(...), or is the end of a run")
 
-    def replace(self, changes: Mapping[str, float] | None = None, /, **named: float) -> State:
+    def replace(self, changes: Mapping[str, float | str] | None = None, /, **named: float | str) -> State:
         """The same state with other numbers, by their names.
 
         Raises:
@@ -57,7 +57,8 @@ class State(Presented, Mapping[str, float]):
 
         numbers = self.numbers.copy()
         for name, value in {**(changes or {}), **named}.items():
-            numbers[self._place(name)] = arguments.number(name, value)
+            place = self._place(name)
+            numbers[place] = arguments.number(name, value, self._described[place][1])
         return State.of(self.drive, numbers)
 
     @property

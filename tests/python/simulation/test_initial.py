@@ -149,7 +149,7 @@ def _value(model: Any, path: str) -> Any:
         ({"input_angle": 1.0, "output_angle": 0.1, "torque": 0.1}, ValueError, "each follows from the others"),
         ({"speed": 1.0}, ValueError, 'the name of a quantity in initial = "speed" must be one of'),
         ({"torque": np.nan}, ValueError, "initial torque must be finite"),
-        ({"torque": "much"}, TypeError, "torque"),
+        ({"torque": "much"}, ValueError, 'initial torque = "much" must be a number and its unit, as "1.2 N.m"'),
         ({"torque": [1.0, 2.0]}, ValueError, "must be one value"),
         ({"current": 1.0}, ValueError, "it follows at once"),
         (3, TypeError, "initial"),

@@ -66,8 +66,9 @@ def test_a_state_changes_for_nobody() -> None:
         state.numbers[0] = 1.0
     with pytest.raises(ValueError, match="must be one of"):
         state.replace(speed=1.0)
-    with pytest.raises(ValueError, match="input_speed = inf must be finite"):
+    with pytest.raises(ValueError, match="input_speed = inf rad/s must be finite"):
         state.replace(input_speed=inf)
+    assert state.replace(input_speed="60 rpm") == state.replace(input_speed=60.0 * (np.pi / 30.0))
     with pytest.raises(TypeError, match="is made by a drive"):
         State()
 
