@@ -7,7 +7,7 @@ namespace strainwave::host {
 
 bool Reader::text_to_number(nb::handle value, const Field& field, const std::string& name, double& x) const {
     if (!nb::isinstance<nb::str>(value) || !has_unit(field)) return false;
-    x = nb::cast<double>(nb::module_::import_("strainwave.files.figure").attr("number_of")(owner + "." + name, value, field.unit));
+    x = nb::cast<double>(nb::module_::import_("strainwave.arguments").attr("number")(owner + "." + name, value, field.unit));
     return true;
 }
 

@@ -32,7 +32,7 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
     """
     if not isinstance(value, Real) or isinstance(value, bool):
         if isinstance(value, str) and unit not in ("", "1"):
-            from strainwave.files.figure import number_of
+            from strainwave.files.entries import number_of
 
             return number(name, number_of(name, value, unit), unit, brackets, low, high)
         raise TypeError(f"{name} must be a number, not {shortened(value)}")
@@ -110,6 +110,14 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
         raise ValueError(f"{name} has masked values; every one must be a number")
     with np.errstate(over="ignore"):  # a longer float may be too large; whoever wants finite numbers refuses the infinity
         return array.astype(np.float64, copy=False)
+
+
+def positive_series(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """A positive number or more, shape (n,)."""
+    series = np.atleast_1d(numbers(name, values))
+    if series.ndim != 1 or not series.size or not (series > 0.0).all():
+        raise ValueError(f"{name} must be one series of positive numbers")
+    return series
 
 
 def text(name: str, value: object) -> str:

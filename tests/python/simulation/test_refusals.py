@@ -265,7 +265,7 @@ def test_a_run_that_has_diverged_goes_no_further() -> None:
     outputs = np.empty((len(COLUMNS), len(course.times)))
     course_of = (course.instants, excitation.over(course.instants), course.samples[1:])
     _core.simulate(drive, drive.rest().numbers, *course_of, _core.Method.exponential, EVERY, outputs, 1)
-    sound = (np.abs(outputs[:, 1:]) <= simulation.LARGEST).all(axis=0)
+    sound = (np.abs(outputs[:, 1:]) <= simulation.LARGEST_OUTPUT).all(axis=0)
     lost = int(np.argmin(sound))
     assert not sound[lost:].any()
     assert len(set(outputs[COLUMNS.index("command"), lost + 65 :])) == 1
