@@ -12,6 +12,7 @@ import pytest
 import strainwave
 from _pytest.runner import runtestprotocol
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 from strainwave.native import kernels
 
 # Before anything imports numpy, and for the processes of tests too: beside other workers, threads of BLAS wait for each other,
@@ -26,6 +27,10 @@ os.environ.setdefault("STRAINWAVE_KERNELS", str(Path(__file__).parents[1] / "bui
 settings.register_profile("strainwave", deadline=None, derandomize=True, max_examples=40)
 settings.register_profile("explore", deadline=None, derandomize=False, max_examples=100)
 settings.load_profile("strainwave")
+
+# Hypothesis also draws the constants in the sources of all modules that a process has imported. Which those are depends on the
+# tests that a worker ran before, and examples would.
+providers._get_local_constants = lambda: providers._local_constants
 
 
 @pytest.fixture(autouse=True)

@@ -25,6 +25,7 @@ MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is l
 _NEGLIGIBLE_RATE = 1e-12  # rad/s2, A/s: a term so small has no effect
 OVERFLOW_REASON = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
 MAX_TIME_TO_REST, TIMES_TO_REST = 40.0, 8  # s, and instants at which a moving drive is looked at
+MAX_STEPS_TO_REST = 25_000  # to the next of these instants; bristles may chatter for ever, at up to a millisecond a step
 _MAX_INPUT_SPEED = 1e9  # rad/s: a drive that exceeds it has no steady speed
 
 
@@ -213,7 +214,7 @@ def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
 
     A slow motion one way finds none if the load swings back, or if kinetic friction balances it at no angle nearby.
     """
-    from strainwave.simulation.run import simulate
+    from strainwave.simulation.run import simulate_adaptively
     from strainwave.simulation.scenario import constant
 
     command, load_torque, temperature = (float(inputs[place]) for place in (0, 2, 4))
@@ -223,8 +224,10 @@ def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
     for _ in range(TIMES_TO_REST):
         try:
             with warnings.catch_warnings(action="ignore"):
-                run = simulate(drive, held, sample=duration, initial=now, load_torque=load_torque, temperature=temperature)
-                now = run.end
+                now = simulate_adaptively(
+                    drive, held, sample=duration, initial=now, load_torque=load_torque, temperature=temperature,
+                    max_steps=MAX_STEPS_TO_REST,
+                ).end  # fmt: skip
         except (ValueError, FloatingPointError):
             return None
         if (resting := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
