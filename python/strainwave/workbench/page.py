@@ -52,9 +52,6 @@ def fragment(gear_set: GearSet) -> str:
 
 def start_of(gear_set: GearSet, whole: bool = True) -> dict[str, Any]:
     """Return what the page begins with: the gear in a drive and its ratings; if `whole`, also sources and catalogue."""
-    parts = [
-        name for name in ("motor", "control", "load", "sensors", "thermal", "meter") if getattr(gear_set, name) is not None
-    ]
     start = {
         "name": gear_set.name,
         "drive": changed(drive_around(gear_set)),

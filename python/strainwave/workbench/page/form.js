@@ -22,17 +22,23 @@ const select = (options, value, properties = {}) => {
 class Form {
   /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete. */
   constructor(root, schema, unitOf, get, set) {
-    Object.assign(this, { root, schema, unitOf, get, set, rows: new Map(), open: new Set() });
+    Object.assign(this, { root, schema, unitOf, get, set, rows: new Map(), open: new Set(), used: new Set() });
   }
   /** Anew: a law, a length or a unit is another. */
   build() {
     const focus = document.activeElement?.id, drive = this.get(), { models } = this.schema;
     this.rows.clear();
     const gear = models.Gear.fields, loose = gear.filter((field) => field.kind !== "part");
-    const parts = gear.filter((field) => field.kind === "part").map((field) => this.part(field, drive.gear[field.name], ["gear", field.name]));
+    const parts = gear.filter((field) => field.kind === "part"), idle = (field) => !this.used.has(field.name);
+    for (const field of parts) if (!sameValues(drive.gear[field.name], field.default)) this.used.add(field.name); // and stays in its place
+    const shown = (field) => this.part(field, drive.gear[field.name], ["gear", field.name]);
     const own = element("fieldset", {}, element("legend", {}, "gear"), ...loose.flatMap((field) => this.member(field, drive.gear[field.name], ["gear", field.name])));
     const rest = models.Drive.fields.filter((field) => field.name !== "gear").map((field) => this.part(field, drive[field.name], [field.name]));
-    this.root.replaceChildren(...parts, own, this.folded("drive", "Drive: motor, control, load, sensors", rest));
+    this.root.replaceChildren(
+      ...parts.filter((field) => !idle(field)).map(shown), own,
+      this.folded("default", "Parts of the gear that are as by default", parts.filter(idle).map(shown)),
+      this.folded("drive", "Drive: motor, control, load, sensors", rest),
+    );
     if (focus) document.getElementById(focus)?.focus();
   }
   folded(key, title, content) {

@@ -89,7 +89,8 @@ class Workbench {
     this.otherSets = this.other && setsOf(this.schema, this.other.drive);
     let problem = "";
     for (const card of this.cards) if (!card.slow) problem ||= this.drawCard(card);
-    this.say(problem || "", Boolean(problem));
+    if (problem || this.problem) this.say(problem, Boolean(problem));
+    this.problem = problem;
     const run = this.cards.find((card) => card.slow);
     clearTimeout(this.later);
     if ((this.runTime ?? 0) < SLOW_RUN && !problem) this.drawRun(run);
@@ -152,6 +153,12 @@ class Workbench {
         const loop = turnLoop(sets), slopes = slopesOfLoop(loop), top = slopes.y.filter(Number.isFinite);
         return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
       }),
+      card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
+        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs));
+        const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
+        if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
+        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : [])] };
+      }, { slow: true, controls: () => this.runControls() }),
       card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))}`, text(at, this.unit("torque"))]] };
@@ -172,24 +179,19 @@ class Workbench {
         return { curves: [this.scaled({ x: [...curve.x, NaN], y: [...curve.y, 0] }, axes, { ...look(which), mark: "bar" })],
           numbers: [["largest", most > 0 ? `${text(most, this.unit("angle"))} of order ${curve.x[curve.y.indexOf(most)]}` : "none"]] };
       }),
-      card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
-        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs));
-        const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
-        if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : [])] };
-      }, { slow: true, controls: () => this.runControls() }),
     ];
   }
   buildCards() {
     this.cards = this.makeCards();
     by("plots").replaceChildren(...this.cards.map((card) => {
-      const canvas = element("div", { className: "canvas", role: "img" }), at = element("small", {});
+      const canvas = element("div", { className: "canvas", role: "img" });
+      card.at = element("small", { className: "at" });
       card.numbers = element("p", { className: "numbers" });
       card.bar = element("div", { className: "controls" });
       const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png()))];
-      if (card.takes) save.unshift(this.button("Measured data…", () => this.askMeasured(card)));
-      card.element = element("article", { className: "plot" }, element("div", { className: "bar" }, element("h3", {}, card.title), element("div", { className: "controls" }, at, ...save)), card.bar, canvas, card.numbers);
-      card.at = at;
+      if (card.takes) save.unshift(this.button("Data…", () => this.askMeasured(card)));
+      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h3", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
+      canvas.append(card.at);
       if (card.takes) {
         card.element.ondragover = (event) => { event.preventDefault(); card.element.classList.add("over"); };
         card.element.ondragleave = () => card.element.classList.remove("over");
