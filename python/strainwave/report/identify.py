@@ -42,7 +42,12 @@ DIGITS_WITH_SPREAD = 4  # of a number that is followed by the scatter of individ
 
 
 def identify_report(
-    found: Identified, provenance: Provenance | None = None, *, accepted: bool = False, folder: Path = Path()
+    found: Identified,
+    provenance: Provenance | None = None,
+    *,
+    accepted: bool = False,
+    folder: Path = Path(),
+    workbench: str = "",
 ) -> str:
     """Return the report of an identification, as one HTML file that needs nothing else.
 
@@ -51,6 +56,7 @@ def identify_report(
         provenance: how the page came to be, if that is to be shown
         accepted: if true, the gear is written in spite of failed checks
         folder: that it is written into, as the commands of the page name it
+        workbench: page beside it that draws the gear, by its name; empty if there is none
 
     Returns:
         HTML; the same for the same arguments
@@ -70,6 +76,7 @@ def identify_report(
             "numbers": numbers_by_source(found),
             "next": next_commands(found, folder) if accepted or not found.failed else [],
             "accepted": accepted,
+            "workbench": workbench,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],
             "cards": [_card(each, anchors[id(each)]) for each in alone if not each.refused],
             "apart": [_apart(each, other) for each in found.parameters for other in each.contradicts],

@@ -5,9 +5,7 @@
 
 from __future__ import annotations
 
-import base64
 import json
-import zlib
 from pathlib import Path
 from typing import Any
 
@@ -25,13 +23,18 @@ BANDWIDTH_SHARE = 0.2  # of the natural frequency of the load on the gear's spri
 MIN_INERTIA = 1e-6  # kg.m2 of the assumed rotor
 
 
+def is_installed() -> bool:
+    """True if the page was built."""
+    return FILE.is_file()
+
+
 def page(gear_set: GearSet | None = None) -> str:
     """Return the page with a gear inside, as one HTML file.
 
     Raises:
         FileNotFoundError: the page was not built
     """
-    if not FILE.is_file():
+    if not is_installed():
         raise FileNotFoundError(MISSING)
     before, _, rest = FILE.read_text("utf-8").partition(BEGIN)
     return before + BEGIN + embedded(start_of(gear_set or GearSet.read(FIRST_GEAR))) + END + rest.partition(END)[2]
@@ -42,32 +45,24 @@ def embedded(data: Any) -> str:
     return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
-def fragment(gear_set: GearSet) -> str:
-    """Return the part of a link to the page after #, with the gear."""
-    start = start_of(gear_set, whole=False)
-    text = json.dumps({"name": start["name"], "drive": start["drive"], "view": {"travel": start["view"]["travel"]}})
-    packer = zlib.compressobj(9, zlib.DEFLATED, -15)
-    return base64.urlsafe_b64encode(packer.compress(text.encode()) + packer.flush()).decode().rstrip("=")
+def start_of(gear_set: GearSet) -> dict[str, Any]:
+    """Return what the page begins with: the gear in a drive, what it is loaded with, and the sources of its numbers."""
+    sources = {path: entry.source for path, entry in gear_set.sources.items()}
+    return _entry(gear_set) | {"parts": list(_own_parts(gear_set)), "sources": sources}
 
 
-def start_of(gear_set: GearSet, whole: bool = True) -> dict[str, Any]:
-    """Return what the page begins with: the gear in a drive and its ratings; if `whole`, also sources and catalogue."""
-    start = {
-        "name": gear_set.name,
-        "drive": changed(drive_around(gear_set)),
-        "view": {"travel": {"by": "torque", "torque": first_torque(gear_set)}},
-        "rated": rated_torque(gear_set),
-        "parts": list(_own_parts(gear_set)),
-    }
-    if whole:
-        start["sources"] = {path: entry.source for path, entry in gear_set.sources.items()}
-        start["catalogue"] = {name: _entry(GearSet.read(name)) for name in catalogue()}
-    return start
+def entries() -> dict[str, Any]:
+    """Return the gears of the catalogue, by their names."""
+    return {name: _entry(GearSet.read(name)) for name in catalogue()}
 
 
 def _entry(gear_set: GearSet) -> dict[str, Any]:
-    start = start_of(gear_set, whole=False)
-    return {"name": start["name"], "drive": start["drive"], "rated": start["rated"], "travel": start["view"]["travel"]}
+    return {
+        "name": gear_set.name,
+        "drive": changed(drive_around(gear_set)),
+        "travel": {"by": "torque", "torque": first_torque(gear_set)},
+        "rated": rated_torque(gear_set),
+    }
 
 
 def rated_torque(gear_set: GearSet) -> float | None:

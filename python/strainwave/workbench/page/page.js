@@ -29,9 +29,9 @@ function viewFrom(given, like = VIEW) {
 }
 
 class Workbench {
-  constructor(core, schema, start) {
-    Object.assign(this, { core, schema, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
-    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom({ ...VIEW, ...start.view }) };
+  constructor(core, schema, catalogue, start) {
+    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
+    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom({ travel: start.travel }) };
     this.saved = this.state;
   }
   // ---- State ---------------------------------------------------------------------------------------------------------
@@ -341,9 +341,9 @@ class Workbench {
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
     by("name").onchange = () => this.change({ ...this.state, name: by("name").value.replace(/[\r\n]/g, " ") }, true);
-    by("catalogue").append(...Object.keys(this.start.catalogue).map((name) => element("option", { value: name }, name)));
+    by("catalogue").append(...Object.keys(this.catalogue).map((name) => element("option", { value: name }, name)));
     by("catalogue").onchange = () => {
-      const chosen = this.start.catalogue[by("catalogue").value];
+      const chosen = this.catalogue[by("catalogue").value];
       by("catalogue").value = "";
       if (!chosen) return;
       this.change({ ...this.state, name: chosen.name, drive: completed(this.schema, "Drive", chosen.drive), view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } } }, true);
@@ -377,7 +377,7 @@ class Workbench {
 
 async function start() {
   const core = await Core.of(await through(fromBase64(dataIn("wasm")), new DecompressionStream("gzip"), 1 << 24));
-  const workbench = new Workbench(core, dataIn("schema"), dataIn("gear")), fragment = location.hash.slice(1);
+  const workbench = new Workbench(core, dataIn("schema"), dataIn("gears"), dataIn("gear")), fragment = location.hash.slice(1);
   workbench.begin();
   if (fragment) await workbench.openOrSay(fragment);
   return workbench;
