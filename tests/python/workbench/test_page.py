@@ -138,7 +138,8 @@ def test_exports_contain_the_gear_as_changed(tab: Any, tmp_path: Path) -> None:
     names: dict[str, Any] = {}
     exec(tab.locator("#text-content").input_value(), names)
     assert names["gear"] == gear_set.gear
-    assert names["run"]["output_angle"][-1] == pytest.approx(0.1, abs=2e-3)
+    in_page = number(readings(tab), "run") * 3.141592653589793 / 10800.0
+    assert in_page == pytest.approx(names["run"]["output_angle"][-1], rel=1e-3)
     tab.locator("#text-close").click()
     for name in ("CSV", "PNG"):
         with tab.expect_download() as loaded:
@@ -168,7 +169,10 @@ def test_a_kept_gear_is_drawn_beside_and_any_law_can_be_chosen(tab: Any) -> None
     for law in tab.evaluate("[...document.getElementById('law-gear.stiffness').options].map(each => each.value)"):
         tab.locator("#law-gear\\.stiffness").select_option(law)
         assert "CSG-20-100" in readings(tab)["loop"]
-    tab.locator("#law-gear\\.friction_input").select_option("stribeck")
+    tab.locator("#law-gear\\.friction_input").select_option("thermal")
+    tab.locator("#law-gear\\.friction_input\\.law").select_option("coulomb")
+    tab.get_by_role("button", name="one more element of amplitude").first.click()
+    assert tab.locator("#field-gear\\.kinematic_error\\.phase\\.1").count() == 1
     tab.locator("#swap").click()
     assert tab.locator("#law-gear\\.friction_input").input_value() == "coulomb"
 

@@ -89,12 +89,17 @@ function errorOverTurn(core, sets) {
   const angle = between(0, 2 * Math.PI, TURN_POINTS + 1);
   return { x: angle, y: core.error(sets.gear, angle)[0] };
 }
+const COSINES = Float64Array.from({ length: TURN_POINTS }, (_, i) => Math.cos((2 * Math.PI * i) / TURN_POINTS));
+
 /** Amplitude [rad] of each order of one turn, from 1 on. */
-function ordersOf({ x, y }) {
+function ordersOf({ y }) {
   const orders = [], amplitudes = [];
   for (let order = 1; order <= HIGHEST_ORDER; order++) {
     let cosine = 0, sine = 0;
-    for (let i = 0; i < TURN_POINTS; i++) { cosine += y[i] * Math.cos(order * x[i]); sine += y[i] * Math.sin(order * x[i]); }
+    for (let i = 0; i < TURN_POINTS; i++) {
+      cosine += y[i] * COSINES[(order * i) % TURN_POINTS];
+      sine += y[i] * COSINES[(order * i + 0.75 * TURN_POINTS) % TURN_POINTS];
+    }
     orders.push(order);
     amplitudes.push((2 / TURN_POINTS) * Math.hypot(cosine, sine));
   }

@@ -60,11 +60,12 @@ class Form {
     const help = element("details", { className: "help" }, element("summary", {}, model.doc.split("\n")[0] || field.doc),
       element("pre", {}, `${model.doc.split("\n").slice(1).join("\n").trim()}\n\nSource: ${model.source}\nPython: sw.${id}`));
     made.append(help);
-    const fields = model.fields.flatMap((inner) => (inner.kind === "part" ? [this.part(inner, value[inner.name], [...path, inner.name])] : this.member(inner, value[inner.name], [...path, inner.name])));
-    made.append(...fields);
+    made.append(...model.fields.flatMap((inner) => (inner.kind === "part" ? [this.part(inner, value[inner.name], [...path, inner.name])]
+      : this.member(inner, value[inner.name], [...path, inner.name], model.fields, value))));
     return made;
   }
-  member(field, value, path) {
+  /** Rows of a parameter. Sequences of a model that are as long, as orders and amplitudes, grow and shrink together. */
+  member(field, value, path, fields = [], values = {}) {
     const key = path.join(".");
     if (field.kind === "choice") {
       const menu = select(field.options, value, { id: `field-${key}` });
@@ -72,9 +73,14 @@ class Form {
       return [element("div", { className: "row wide" }, element("label", { htmlFor: menu.id }, words(field.name)), menu, element("div", { className: "doc" }, field.doc))];
     }
     if (field.kind !== "sequence") return [this.row(field, path, words(field.name))];
+    const resized = (by) => {
+      const alike = fields.filter((each) => each.kind === "sequence" && values[each.name].length === value.length);
+      const changed = alike.map((each) => [each.name, by < 0 ? values[each.name].slice(0, by) : [...values[each.name], values[each.name].at(-1) ?? zeroScale(each)]]);
+      this.set(path.slice(0, -1), { ...values, ...Object.fromEntries(changed) }, true, true);
+    };
     const count = element("div", { className: "bar" }, element("small", {}, `${words(field.name)}: ${field.doc}`),
-      element("span", {}, this.button(`one more element of ${words(field.name)}`, "+", () => this.set(path, [...value, value.at(-1) ?? (field.min > 0 ? field.min : 1)], true, true)),
-        this.button(`one element of ${words(field.name)} less`, "−", () => this.set(path, value.slice(0, -1), true, true))));
+      element("span", {}, this.button(`one more element of ${words(field.name)}`, "+", () => resized(1)),
+        this.button(`one element of ${words(field.name)} less`, "−", () => resized(-1))));
     return [count, ...value.map((_, i) => this.row(field, [...path, i], `${words(field.name)} ${i + 1}`))];
   }
   button(label, text, act) {
@@ -134,12 +140,15 @@ class Form {
 /** Scale of a slider whose number is zero: the default of its field, else an angle of a turn, else one. */
 const zeroScale = (field) => (typeof field.default === "number" && field.default) || (field.unit === "rad" ? Math.PI : 1);
 
-/** The values that a law has in common with another, by name and kind, where the new one allows them. */
+/** The values that a law has in common with another: the same law within it or around it, else numbers of the same names. */
 function shared(schema, id, values) {
-  const kept = {};
-  for (const field of schema.models[id].fields) {
-    if (!Object.hasOwn(values, field.name) || field.kind === "part") continue;
-    try { kept[field.name] = checked(schema, id, field, values[field.name]); } catch { /* the default, then */ }
+  const { name, fields } = schema.models[id], within = Object.values(values).find((value) => value?.model === name);
+  if (within) return within;
+  const kept = {}, sequences = fields.filter((field) => field.kind === "sequence"), together = sequences.every((field) => Object.hasOwn(values, field.name));
+  for (const field of fields) {
+    const value = field.kind === "part" ? values : values[field.name];
+    if (value === undefined || (field.kind === "sequence" && !together)) continue;
+    try { kept[field.name] = checked(schema, id, field, value); } catch { /* the default, then */ }
   }
   return kept;
 }

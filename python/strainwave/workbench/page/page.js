@@ -28,6 +28,15 @@ function viewFrom(given, like = VIEW) {
   }));
 }
 
+/** A function of the sets of a drive whose result several plots of one frame share. */
+function sharedByPlots(of) {
+  const known = new WeakMap();
+  return (sets) => {
+    if (!known.has(sets)) known.set(sets, of(sets));
+    return known.get(sets);
+  };
+}
+
 class Workbench {
   constructor(core, schema, catalogue, start) {
     Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
@@ -137,7 +146,8 @@ class Workbench {
     const look = (which) => ({ colour: which === "one" ? "--one" : "--other", dash: which !== "one" });
     const text = (value, of) => `${shortText(value / of.factor)} ${of.text}`;
     const perAngle = () => this.unitOf("N.m/rad");
-    const turnLoop = (sets) => loopOf(this.core, sets, this.view.travel);
+    const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
+    const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
     const output = () => OUTPUTS[this.view.run.shown] ?? OUTPUTS["output angle"];
     const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
     return [
@@ -166,16 +176,16 @@ class Workbench {
         const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
-      card("angle", "Friction over one input turn", () => [axis("input angle", degrees), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
+      card("angle", "Friction over a turn", () => [axis("input angle", degrees), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverAngle(this.core, sets, this.view.friction), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("torque"))]] };
       }, { controls: () => this.numberControls("friction", [["speed", "at", "speed"]]) }),
-      card("error", "Kinematic error over one input turn", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
-        const curve = errorOverTurn(this.core, sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
+      card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
+        const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("angle"))]] };
       }),
-      card("orders", "Orders of the kinematic error", () => [{ label: "order of the input turn", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
-        const curve = ordersOf(errorOverTurn(this.core, sets)), most = Math.max(...curve.y);
+      card("orders", "Orders of the error", () => [{ label: "periods a turn of the input", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
+        const curve = ordersOf(turnError(sets)), most = Math.max(...curve.y);
         return { curves: [this.scaled({ x: [...curve.x, NaN], y: [...curve.y, 0] }, axes, { ...look(which), mark: "bar" })],
           numbers: [["largest", most > 0 ? `${text(most, this.unit("angle"))} of order ${curve.x[curve.y.indexOf(most)]}` : "none"]] };
       }),
@@ -190,7 +200,7 @@ class Workbench {
       card.bar = element("div", { className: "controls" });
       const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png()))];
       if (card.takes) save.unshift(this.button("Data…", () => this.askMeasured(card)));
-      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h3", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
+      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h2", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
       canvas.append(card.at);
       if (card.takes) {
         card.element.ondragover = (event) => { event.preventDefault(); card.element.classList.add("over"); };
