@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from report import Column, installed, print_table, save, three_digits
 from rich.console import Console
 from strainwave.rig.virtual.render import Scene, render
-from strainwave.rig.vision.angle import follow, look
+from strainwave.rig.vision.angle import follow
 from strainwave.rig.vision.image import as_image
+from strainwave.rig.vision.marker import look
 
 FRAMES = 2000
 QUICK = 200

@@ -10,7 +10,7 @@ a thirtieth of those of a joint, so that two minutes stand for an hour. All ther
 import numpy as np
 import strainwave as sw
 from matplotlib.figure import Figure
-from strainwave.tuning.candidates import EFFECTS, with_effects
+from strainwave.tuning.candidates import GEAR_EFFECTS, with_effects
 from strainwave.tuning.cascade import Plant, Setting, model_of, observer_of, tuned_law
 
 plant = Plant.of(sw.GearSet.read("robot-joint"), period=1e-3, delay=0.0)
@@ -25,7 +25,7 @@ law, swing = (
 scale = sw.compensation.FrictionScale(gain=30.0, position_gain=law.position_gain, min_speed=15.0)
 twist = sw.compensation.TwistIdentification(order=[2], compliance_prior=0.1, offset_prior=1e-4, memory=120.0)
 number = "control.compensation.learning.{}_compliance"
-model = model_of(plant, with_effects(gear, tuple(EFFECTS)))
+model = model_of(plant, with_effects(gear, tuple(GEAR_EFFECTS)))
 plain = sw.Compensation(feedforward=model, actuation_per_torque=plant.actuation_per_torque)
 COMPENSATIONS = {
     "model of the cold joint": plain,

@@ -33,8 +33,8 @@ def nothing_remembered() -> Iterator[None]:
     """Each test begins as a new process does: no gear was loaded from a file with ratings, and no drive has taken a step."""
     yield
     kernels.forget_work()
-    if ratings := sys.modules.get("strainwave.files.ratings"):
-        ratings.forget()
+    if gear_set := sys.modules.get("strainwave.files.gear_set"):
+        gear_set.forget_loaded_sets()
 
 
 def pytest_configure() -> None:

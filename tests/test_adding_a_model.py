@@ -24,7 +24,6 @@ SOURCES = [
 ]
 
 # Where else a model is named, and why it must be.
-LOG = "viscous friction becomes Coulomb's where a log is to tell it"
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
@@ -77,15 +76,14 @@ ELSEWHERE = {
         "laws.hpp": "what a misalignment is to leading order",
         "verbs.cpp": "the harmonics of any error are of this form",
         "analysis/steady.py": STEADY_RUNNING,
-        "identification/dynamics/log.py": "harmonics found in a log are of this form",
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
-        "diagnose/steady_run.py": "an error of one order, by which a drive is probed",
+        "diagnose/smallest_error.py": "an error of one order, by which a drive is probed",
     },
     "ToothWear": {"spline_orders.py": "its waves have the orders of the splines"},
     "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
-        "identification/experiments/stages.py": "whose springs a loop has in series with that of the flexspline",
+        "identification/experiments/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
         "parameter_drive.hpp": BOUND_TO_ANY,
         "diagnose/actuator_ramp.py": SERIES,
     },
@@ -103,13 +101,12 @@ ELSEWHERE = {
     },
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Viscous": {
-        "identification/dynamics/log.py": LOG,
         "identification/experiments/friction_table.py": "by which a place without friction is known",
     },
     "LoadDependent": {"files/datasheet.py": SHEET},
     "AccelerationSource": {
         "analysis/steady.py": "accelerates under any torque, so that there is no equilibrium",
-        "identification/experiments/driven_log.py": "the input of a log moves as it was measured",
+        "identification/experiments/drive_log.py": "the input of a log moves as it was measured",
     },
     "CurrentSource": {
         "identification/kinds/prepared_log.py": "a log contains the current along a motion, whatever the motor",
@@ -124,7 +121,6 @@ ELSEWHERE = {
         "friction/asymmetric.hpp": "what it modulates by default",
         "friction/thermal.hpp": "what it modulates by default",
         "identification/kinds/at_rest.py": AT_REST,
-        "identification/dynamics/log.py": LOG,
     },
     "MaxwellSlipFriction": {"identification/kinds/at_rest.py": AT_REST},
     "Stribeck": {
@@ -138,11 +134,11 @@ ELSEWHERE = {
     "DC": {"identification/kinds/prepared_log.py": "of a log of voltage alone, less what a motor induces"},
     "OpenLoop": {
         "simulation/controller.py": "what a drive has for a controller where a function of Python is it",
-        "identification/experiments/driven_log.py": "the motion of a log is the command itself",
+        "identification/experiments/drive_log.py": "the motion of a log is the command itself",
     },
     "PID": {"control/sampled.hpp": "what it samples by default"},
     "Sampled": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/control.cpp": BOUND_TO_ANY,
         "native/static_type.py": "whose law and compensation are parameters of its type",
@@ -154,7 +150,7 @@ ELSEWHERE = {
     },
     "PositionSpeed": {"control/cascade.hpp": "the outer loops of a cascade"},
     "Ideal": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
         "sensor/delayed.hpp": "what it delays by default",
         "sensor/noisy.hpp": "what it adds noise to by default",
         "sensor/quantised.hpp": "what it reads in steps by default",
@@ -162,10 +158,10 @@ ELSEWHERE = {
     "BristleObserver": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Delayed": {"parameter_drive.hpp": BOUND_TO_ANY},
     "Encoder": {
-        "analysis/continuous.py": LINEAR,
+        "analysis/linear.py": LINEAR,
     },
-    "Noisy": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
-    "Quantised": {"analysis/continuous.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
+    "Noisy": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
+    "Quantised": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
     "NoMeter": {"drive.hpp": DEFAULT},
     "Inertia": {
@@ -188,7 +184,7 @@ ELSEWHERE = {
     },
     "Cyclic": {
         "parameter_drive.hpp": BOUND_TO_ANY,
-        "identification/kinds/constant_speed_runs.py": "waves found over the angle, around the friction that is known",
+        "identification/kinds/constant_speed.py": "waves found over the angle, around the friction that is known",
     },
     "Thermal": {
         "parameter_drive.hpp": BOUND_TO_ANY,

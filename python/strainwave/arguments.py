@@ -99,6 +99,14 @@ def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
         return array.astype(np.float64, copy=False)
 
 
+def positive_series(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """A positive number or more, shape (n,)."""
+    series = np.atleast_1d(numbers(name, values))
+    if series.ndim != 1 or not series.size or not (series > 0.0).all():
+        raise ValueError(f"{name} must be one series of positive numbers")
+    return series
+
+
 def text(name: str, value: object) -> str:
     """A text."""
     if not isinstance(value, str):

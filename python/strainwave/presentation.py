@@ -182,10 +182,13 @@ class Reported:
 
         from strainwave.files.writing import write_folder
 
-        # By name, as the rooms of results know nothing of that of reports.
-        files = import_module("strainwave.report.files_of").files_of(self)
-        write_folder(Path(folder), files)
+        write_folder(Path(folder), self._files())
         return Path(folder) / "report.html"
+
+    def _files(self) -> Mapping[str, str | bytes]:
+        """Return the files of the report by name; imported by name, as the rooms of results know nothing of that of reports."""
+        files: Mapping[str, str | bytes] = import_module("strainwave.report.files_of").files_of(self)
+        return files
 
 
 # ---- Rows of a dataclass ---------------------------------------------------------------------------------------------

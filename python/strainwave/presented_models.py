@@ -43,7 +43,7 @@ class Model(Presented):
         >>> sw.load("hfuc-25-100").plot().get_suptitle()
         'Gear of ratio −100'
         """
-        from strainwave.files.gear_plot import gear_figure
+        from strainwave.files.plots import gear_figure
 
         gear = getattr(self, "gear", self)
         return gear_figure(gear, f"Gear of ratio {gear.kinematics.ratio:g}".replace("-", "−"))

@@ -38,7 +38,7 @@ class Answer:
 
     @property
     def options(self) -> list[str]:
-        """The words to add to a command line.
+        """The options to add to a command line; `files` go behind them.
 
         >>> Answer("samples of a log", {"constants": {"rate": 500.0}}, numbers={"rate": "rows per second"}).options
         ['--constant', 'rate=NUMBER']
@@ -47,7 +47,7 @@ class Answer:
         for name, option in TABLES.items():
             for key, value in self.given.get(name, {}).items():
                 words += [option, f"{key}={self._written(key, value)}"]
-        return [*words, *self.files]
+        return words
 
     @property
     def stated(self) -> frozenset[tuple[str, str]]:
@@ -110,7 +110,7 @@ the motor with --side input (in Python FileMapping(side="input"))
         self.question, self.answers, self.by_fit = question, tuple(answers), by_fit
         in_python = [f" (in Python FileMapping({each.arguments}))" if each.given else "" for each in self.answers]
         ways = [
-            f"{each.label} with {shlex.join(each.options)}{python}"
+            f"{each.label} with {shlex.join([*each.options, *each.files])}{python}"
             for each, python in zip(self.answers, in_python, strict=True)
         ]
         ends = list(accumulate(map(len, ways), initial=len(question)))
@@ -126,7 +126,7 @@ the motor with --side input (in Python FileMapping(side="input"))
         """Return the question, and for each answer a command line to paste.
 
         Args:
-            words: the command line that led to the question
+            words: the command line that led to the question; options go before a `--`
 
         >>> answer = Answer("the motor", {"side": "input"}, gives="a log")
         >>> print(*QuestionError("which side?", [answer]).lines(["x"]), sep="\\n")
@@ -134,14 +134,24 @@ the motor with --side input (in Python FileMapping(side="input"))
           1. the motor: a log
             x --side input
         """
-        found = [self.question]
-        for number, each in enumerate(self.answers, start=1):
-            numbers = "".join(f"; {NUMBER}: {what}" for what in dict.fromkeys(each.numbers.values()))
-            found += [
-                f"  {number}. {each.label}{': ' * bool(each.gives)}{each.gives}{numbers}",
-                f"    {shlex.join([*words, *each.options])}",
+        lines = [self.question]
+        for number, answer in enumerate(self.answers, start=1):
+            numbers = "".join(f"; {NUMBER}: {what}" for what in dict.fromkeys(answer.numbers.values()))
+            lines += [
+                f"  {number}. {answer.label}{': ' * bool(answer.gives)}{answer.gives}{numbers}",
+                f"    {shlex.join(added_to(words, answer.options, answer.files))}",
             ]
-        return [_on_one_line(line) for line in found]
+        return [_on_one_line(line) for line in lines]
+
+
+def added_to(words: Sequence[str], options: Sequence[str], files: Sequence[str] = ()) -> list[str]:
+    """Return a command line with further options and files. Behind a `--` all words are files.
+
+    >>> added_to(["identify", "csg-20-100", "--", "-log.csv"], ["--side", "input"])
+    ['identify', 'csg-20-100', '--side', 'input', '--', '-log.csv']
+    """
+    end = words.index("--") if "--" in words else len(words)
+    return [*words[:end], *options, *words[end:], *files]
 
 
 def _on_one_line(text: str) -> str:

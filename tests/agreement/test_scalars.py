@@ -10,7 +10,7 @@ import strainwave as sw
 from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
-from strainwave.simulation.ensemble import WHOLE
+from strainwave.simulation.ensemble import COUNTED_NAMES
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
@@ -74,7 +74,7 @@ def scattered(drive: Drive, count: int, seed: int, whole_orders: bool) -> list[D
     """Drives that differ in every number but those that are counted, and in the orders of the error only if told."""
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, (count, numbers(drive).size))
     paths = [path for path, *_ in _core.parameters(drive)]
-    factors[:, [path.rpartition(".")[2] in WHOLE or (whole_orders and ".order[" in path) for path in paths]] = 1.0
+    factors[:, [path.rpartition(".")[2] in COUNTED_NAMES or (whole_orders and ".order[" in path) for path in paths]] = 1.0
     return [_core.with_numbers(drive, numbers(drive) * factor) for factor in factors]
 
 

@@ -27,7 +27,7 @@ from strainwave.native import kernels
 from strainwave.native.cache import find_kernel, make_kernel
 from strainwave.native.kernel import Kernel
 from strainwave.simulation.excitation import Excitation
-from strainwave.simulation.run import METHODS, differentiate
+from strainwave.simulation.run import METHOD_WORDS, differentiate
 from strainwave.simulation.signals import outputs
 
 from tests.evidence.stress import MOST_STEPS, STEPS, acting_on, model, neighbours, step
@@ -54,7 +54,7 @@ def digest(number: int, max_phase: float = math.inf) -> dict[str, str]:
     free = sorted(random.choice(len(_core.parameters(drive)), count, replace=False).tolist())
     course: dict[str, Any] = {"sample": sample, **acting}
     runs: dict[str, Callable[[], Any]] = {
-        method: partial(sw.simulate, drive, volts, dt, method=method, **course) for method in METHODS
+        method: partial(sw.simulate, drive, volts, dt, method=method, **course) for method in METHOD_WORDS
     }
     runs["adaptive"] = partial(sw.simulate_adaptively, drive, volts, 1e-5, max_steps=MOST_STEPS, **course)
     runs["many"] = partial(sw.simulate_many, drive, volts, varied, dt, record=list(outputs(drive)), **course)

@@ -83,7 +83,7 @@ FAULTS = (
     ),
     Fault(
         "dataset",
-        f"{PACKAGE}/dataset/splits.py",
+        f"{PACKAGE}/dataset/sampling.py",
         "np.where(by_unit == by_condition, by_unit, MIXED)",
         "np.where(by_unit == by_condition, by_unit, by_condition)",
     ),

@@ -27,10 +27,8 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy import fft
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.motion import SampledMotion, motion_of
-from strainwave.diagnose.regression import regressions
-from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
-from strainwave.diagnose.steady_run import COLUMN, RecordedOrder, SteadyRun
+from strainwave.diagnose.regression import SampledMotion, motion_of, regressions
+from strainwave.diagnose.smallest_error import CURRENT_COLUMN, DetectionLimit, RecordedOrder, SteadyRun, detection_limit
 
 Array = NDArray[np.float64]
 
@@ -151,7 +149,7 @@ def healthy_motions(units: int, seed: int = 3) -> tuple[SampledMotion, ...]:
         friction, inertia, faster, load = 1.0 + 0.2 * random.uniform(-1.0, 1.0, 4)
         drive = signature_drive(0.03 * friction, 1.5e-4 * inertia)
         run = SteadyRun(drive, 10.0 * faster, 20.0 * load, 24.0, 250.0, 1.0)
-        motions.append(motion_of(run.with_error(0.0), COLUMN, max(ORDERS)))
+        motions.append(motion_of(run.with_error(0.0), CURRENT_COLUMN, max(ORDERS)))
     return tuple(motions)
 
 

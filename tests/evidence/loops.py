@@ -20,9 +20,10 @@ import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identification.candidates.torsion.candidate import candidate
-from strainwave.identification.candidates.torsion.dissipation import Dissipation, Elements
-from strainwave.identification.candidates.torsion.memories import (
+from strainwave.identification.candidates.torsion.dissipation import (
     BoucWen,
+    Dissipation,
+    Elements,
     FadingMemory,
     FrictionalWindup,
     Preisach,

@@ -33,8 +33,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import recognise
 from strainwave.identification.reading.source import measurement_files
 from strainwave.identification.results.combined_parameter import difference
-from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED, FileEstimate
 
 Array = NDArray[np.float64]
 SHARED = Path(__file__).parents[3] / "shared"

@@ -20,7 +20,7 @@ from strainwave.diagnose.inversion import MisalignmentEstimate
 from strainwave.diagnose.possible_drives import PossibleDrives, drawn_changes
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.tuning.drawn import PARTS, spread_of
+from strainwave.tuning.drawn import DRAWN_PARTS, spread_of
 
 UNITS, SEED = 200, 1000  # the diagnosis draws its drives with another seed
 NOISE = 0.02  # A, root mean square of the noise of the recorded current, besides that in the loops
@@ -67,7 +67,7 @@ def widened(gear_set: GearSet, factor: float) -> GearSet:
     """Return a set whose numbers have a larger spread."""
     sources = {
         path: replace(entry, spread=factor * spread_of(gear_set, part))
-        for part in PARTS
+        for part in DRAWN_PARTS
         for path, entry in gear_set.sources.items()
         if path == part or path.startswith(f"{part}.")
     }

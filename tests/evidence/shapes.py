@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import strainwave as sw
-from strainwave.identification.checks.shape import NAME
+from strainwave.identification.checks.unexplained import SHAPE_OF_RESIDUALS
 from strainwave.identification.reading.mapping import FileMapping
 
 COUNT = 200
@@ -60,7 +60,7 @@ def named(draw: Callable[[np.random.Generator], Drawn], count: int) -> tuple[int
     for seed in range(count):
         kind, recording = draw(np.random.default_rng(seed))
         found = sw.identify(START, {kind: recording}, mapping=FileMapping(), accept=True)
-        checks += [check for check in found.checks if check.name == NAME]
+        checks += [check for check in found.checks if check.name == SHAPE_OF_RESIDUALS]
     return len(checks), sum(check.value > 0.0 for check in checks), sum(check.failed for check in checks)
 
 

@@ -29,9 +29,9 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.analysis.sensitivity import NO_MEASURE
-from strainwave.simulation.ensemble import WHOLE
+from strainwave.simulation.ensemble import COUNTED_NAMES
 from strainwave.simulation.excitation import Excitation
-from strainwave.simulation.run import METHODS
+from strainwave.simulation.run import METHOD_WORDS
 from strainwave.simulation.signals import load_input, outputs
 
 from tests.laws.test_gear import has_memory, passive, speeds
@@ -49,7 +49,7 @@ SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 # Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
 # not; instants of sampling, which all members share and which nothing is derived by; and what is counted.
-SHARED = re.compile(rf"\.({'|'.join(sorted(WHOLE))})$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
+SHARED = re.compile(rf"\.({'|'.join(sorted(COUNTED_NAMES))})$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -149,7 +149,7 @@ def outcome(number: int) -> Outcome:
     course: dict[str, Any] = {**acting, "sample": 20.0 * dt}
     excitation = Excitation.of(drive, volts, **acting)
     inputs = excitation.over(excitation.time_grid(dt, None).instants)[-1, -1]
-    method: Any = (*METHODS, None)[random.integers(len(METHODS) + 1)]
+    method: Any = (*METHOD_WORDS, None)[random.integers(len(METHOD_WORDS) + 1)]
     began = time.perf_counter()
     said = {method or "chosen": words(lambda: check(drive, sw.simulate(drive, volts, dt, method=method, **course), inputs))}
     if number % 5 == 0:

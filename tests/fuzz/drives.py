@@ -11,7 +11,7 @@ import numpy as np
 import strainwave as sw
 from numpy.random import Generator
 from strainwave import _core
-from strainwave.simulation.run import METHODS
+from strainwave.simulation.run import METHOD_WORDS
 
 from tests.evidence.stress import model
 from tests.fuzz.laws import Case, described, finite
@@ -58,7 +58,7 @@ def _made_anew(value: Any) -> Any:
 
 
 def _run(drive: Any, random: Generator, inputs: dict[str, float]) -> sw.Run:
-    dt, method = _step(drive, random), picked(random, (*METHODS, None))
+    dt, method = _step(drive, random), picked(random, (*METHOD_WORDS, None))
     return sw.simulate(drive, sw.scenario.sine(5.0, 0.05 / dt, 20.0 * dt), dt, method=method, **inputs)
 
 

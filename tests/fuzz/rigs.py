@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import strainwave as sw
 from numpy.random import Generator
 from strainwave.rig import TorsionTest, read_test, write_rig, write_steps
-from strainwave.rig.bench.steps_file import COLUMNS, read_steps
+from strainwave.rig.bench.steps import COLUMNS, read_steps
 
 from tests.fuzz.laws import Case, described, within_memory
 from tests.fuzz.mutation import encoded, mutated

@@ -287,7 +287,8 @@ def in_control(gear_set: sw.GearSet, folder: Path) -> Compared:
 
 def _friction_at_input(gear: sw.Gear, speed: Array) -> Array:
     """Return the friction of a gear at the input [N.m], in the mean over a turn."""
-    from strainwave.export.elements import ROOM_TEMPERATURE, steady_torque
+    from strainwave.simulation.excitation import ROOM_TEMPERATURE
+    from strainwave.tuning.cascade import steady_torque
 
     angle = np.linspace(0.0, 2.0 * np.pi * abs(float(gear.kinematics.ratio)), 61)
     torque: Array = steady_torque(gear, speed[:, None], angle[None, :], 0.0, ROOM_TEMPERATURE).friction.mean(axis=1)

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core
 from strainwave.friction import LuGre, MixedLubrication, PositionDependent
 from strainwave.kinematic_error import Fourier, Misalignment, Scaled, Stochastic, ToothErrors
-from strainwave.simulation.initial import beginning_numbers
 from strainwave.simulation.signals import outputs
+from strainwave.simulation.state import beginning_numbers
 from strainwave.stiffness import Cubic, Linear, MultiCompliance, Piecewise, ThreeSegment
 
 from tests.support.samples import sample

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 from strainwave import Drive, _core
 from strainwave.simulation.resolution import diverged
-from strainwave.simulation.run import METHODS
+from strainwave.simulation.run import METHOD_WORDS
 
 from tests.laws.test_gear import speeds
 from tests.meter.joints import COMMAND, DURATION, drawn, inputs
@@ -311,7 +311,7 @@ def test_a_random_error_works_on_the_shafts_as_its_amplitude_changes() -> None:
 # Whoever measures changes nothing
 
 
-@pytest.mark.parametrize(("method", "within"), {**dict.fromkeys(METHODS, 0.0), "rosenbrock": 1e-12}.items())
+@pytest.mark.parametrize(("method", "within"), {**dict.fromkeys(METHOD_WORDS, 0.0), "rosenbrock": 1e-12}.items())
 @pytest.mark.parametrize("seed", [0, 1, 2, 3])
 def test_a_meter_changes_no_run_in_fixed_steps(seed: int, method: Any, within: float) -> None:
     """Not a bit; but the W-method solves equations for all numbers of a state at once, and more of them round otherwise."""

@@ -46,6 +46,11 @@ def test_nothing_imports_the_command_but_its_start() -> None:
     assert users == {"__main__"}
 
 
+def test_a_person_who_never_opens_the_rig_can_forget_it() -> None:
+    outside = [path for path in PACKAGE.rglob("*.py") if "rig" not in path.relative_to(PACKAGE).parts]
+    assert [path.name for path in outside if any(name.startswith("rig") for name in imported(path))] == []
+
+
 @pytest.mark.slow("physics")
 def test_the_command_and_the_demonstration_begin_without_what_only_a_verb_needs() -> None:
     code = "import strainwave.{}, sys; print({} & sys.modules.keys())"

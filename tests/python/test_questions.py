@@ -75,3 +75,10 @@ def test_the_command_line_has_no_words_of_python() -> None:
     question = QuestionError("which?", [Answer("this", GIVEN[0]), Answer("that", GIVEN[3])])
     assert "FileMapping" in str(question)
     assert "Python" not in with_options(str(question))
+
+
+def test_options_go_before_the_end_of_options() -> None:
+    """A file whose name begins with a hyphen stands behind `--`, where an option would be taken for a file."""
+    question = QuestionError("which?", [Answer("at the motor", {"side": "input"}, files=("-q.csv",))])
+    words = ["strainwave", "identify", "csg-20-100", "--", "-log.csv"]
+    assert shlex.split(question.lines(words)[-1]) == [*words[:3], "--side", "input", *words[3:], "-q.csv"]

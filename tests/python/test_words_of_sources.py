@@ -34,7 +34,9 @@ def test_a_code_and_a_cut_name_are_found() -> None:
     assert faults("the document gives no numbers; size 20-100 of HFUC-20-80") == []
 
 
-@pytest.mark.parametrize("path", sorted((PACKAGE / "catalogue").rglob("*.toml")), ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path", sorted([*(PACKAGE / "catalogue").rglob("*.toml"), *(PACKAGE / "rig").rglob("*.toml")]), ids=lambda path: path.stem
+)
 def test_sets_name_their_sources_in_words(path: Path) -> None:
     assert faults(path.read_text(encoding="utf-8")) == []
 
@@ -42,8 +44,8 @@ def test_sets_name_their_sources_in_words(path: Path) -> None:
 def test_published_tables_and_templates_of_pages_have_no_code() -> None:
     paths = [
         *(PACKAGE / "published").iterdir(),
-        *(PACKAGE / "report" / "templates").iterdir(),
-        *(PACKAGE / "report").glob("*.py"),
+        *(PACKAGE / "report").rglob("*.*"),
+        *(PACKAGE / "rig" / "report").rglob("*.*"),
     ]
     found = {
         path.name: CODE.findall(path.read_text(encoding="utf-8"))

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.rig.vision.angle import look
 from strainwave.rig.vision.image import Image, read_image
-from strainwave.rig.vision.marker import Marker, find_markers
+from strainwave.rig.vision.marker import Marker, find_markers, look
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "circle-targets"
 PHOTOGRAPH = FOLDER / "md_test_data_example.jpg"

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.candidates.warming import Warming, friction_over_temperature
+from strainwave.identification.candidates.steady_friction import Warming, friction_over_temperature
 from strainwave.identification.reading.mapping import FileMapping
 
 FOLDER = Path(os.environ.get("STRAINWAVE_DATA", Path(__file__).parents[3] / "shared" / "data")) / "cobot-temperature"

@@ -12,7 +12,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
-from strainwave.identification.checks.motion import ratio_by_orders
+from strainwave.identification.checks.logs import ratio_by_orders
 from strainwave.identification.experiments.motion_log import spoilt
 from strainwave.identification.identify import identify
 from strainwave.identification.reading.mapping import FileMapping

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify, read_measurements
-from strainwave.identification.rank import rank
+from strainwave.identification.kinds.kind import rank
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import measurement_files

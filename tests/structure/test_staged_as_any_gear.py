@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.simulation.initial import beginning_numbers
-from strainwave.simulation.state import StateLayout
+from strainwave.simulation.state import StateLayout, beginning_numbers
 
 from tests.structure.staged_gear import (
     DAMPINGS,

@@ -20,7 +20,7 @@ NUMBERS = {
 def options_of(question: BaseException | None) -> list[str]:
     """The options of each answer to a question, as a command line has them."""
     assert isinstance(question, QuestionError)
-    return [shlex.join(answer.options) for answer in question.answers]
+    return [shlex.join([*answer.options, *answer.files]) for answer in question.answers]
 
 
 def mapping_of(answer: Answer, **further: object) -> FileMapping:

@@ -1,5 +1,4 @@
-from .agreement import Agreement as Agreement
-from .difference import Difference as Difference
+from .compare import Agreement as Agreement, Difference as Difference
 from .error_bounds import ErrorBound as ErrorBound, positioning_error as positioning_error
 from .linear import Linearisation as Linearisation, modes as modes
 from .measured_command import MeasuredCommand as MeasuredCommand

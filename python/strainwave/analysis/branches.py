@@ -72,8 +72,7 @@ def slid(path: Array) -> NDArray[np.bool_]:
     begun = np.zeros(len(path), int)
     begun[turns] = turns
     begun = np.maximum.accumulate(begun)  # the reversal before each sample
-    slides: NDArray[np.bool_] = np.abs(path - path[begun]) >= PRESLIDING_SHARE * np.ptp(path)
-    return slides
+    return np.asarray(np.abs(path - path[begun]) >= PRESLIDING_SHARE * np.ptp(path))
 
 
 def still_slides(path: Array, torque: Array, turn: int) -> bool:

@@ -3,12 +3,230 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, overload
+from dataclasses import dataclass, replace
+from itertools import zip_longest
+from math import hypot, isfinite
+from typing import Any, TypeAlias, overload
 
-from strainwave.analysis.agreement import Agreement, agreements
-from strainwave.analysis.difference import Difference, Model, differences
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, arguments
+from strainwave._core import Gear
+from strainwave.files.described import parameters, parts
+from strainwave.files.gear_file import at
+from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.messages import shortened
+from strainwave.messages import listed, quoted, shortened
+from strainwave.presentation import Statement
+
+Array = NDArray[np.float64]
+Model: TypeAlias = Gear | Drive | GearSet
+
+
+@dataclass(frozen=True)
+class Agreement(Statement):
+    """Agreement of a column of one recording with that of another.
+
+    Attributes:
+        name, unit: of the column, as the first recording has it
+        rms: root mean square of the difference, each sample of the first counted once [unit]
+        largest: largest size of the difference [unit]
+        time: when it is that large [s]
+        correlation: Pearson's coefficient; None where one of them does not change
+        samples: how many were compared
+
+    >>> import strainwave as sw
+    >>> units = {"time": "s", "torque": "N.m"}
+    >>> measured = sw.Recording({"time": [0.0, 1.0, 2.0], "torque": [0.0, 10.0, 20.0]}, units)
+    >>> (agreement,) = sw.compare(measured, measured.with_column("torque", [0.0, 10.4, 20.3], "N.m"))
+    >>> round(agreement.rms, 3), round(agreement.largest, 3), agreement.unit, agreement.time
+    (0.289, 0.4, 'N.m', 1.0)
+    """
+
+    name: str
+    unit: str
+    rms: float
+    largest: float
+    time: float
+    correlation: float | None
+    samples: int
+
+    def _headline(self) -> str:
+        related = "one is constant" if self.correlation is None else f"correlation {self.correlation:.6g}"
+        sizes = f"rms {self.rms:.4g} {self.unit}, largest {self.largest:.4g} {self.unit} at t = {self.time:.4g} s"
+        return f"{self.name}: {sizes}, {related}"
+
+
+def agreements(first: Recording, second: Recording, names: Sequence[str] | None) -> list[Agreement]:
+    """Return the agreement of each column that both recordings have, or of the named ones; see `compare`."""
+    time, other = first.time, second.time
+    if names is None:
+        wanted = [name for name in first.names if name in second and name != "time"]
+        if not wanted:
+            raise ValueError(f"the recordings have no column in common: {listed(first.names)}; and {listed(second.names)}")
+    elif not (wanted := arguments.names("names", names)) or "time" in wanted:
+        raise ValueError(f"names = {shortened(wanted)} must name columns besides the time; there are {listed(first.names)}")
+    common = (time >= other[0]) & (time <= other[-1])
+    if not common.any():
+        apart = time[-1] < other[0] or other[-1] < time[0]
+        remedy = "shift the time of one" if apart else "no sample of the first lies within the second, so exchange them"
+        one, two = (f"{of[0]:g} s to {of[-1]:g} s" for of in (time, other))
+        raise ValueError(f"the recordings have no time in common: {one} and {two}; {remedy}")
+    return [_agreement(name, first, second, common) for name in wanted]
+
+
+def _agreement(name: str, first: Recording, second: Recording, common: NDArray[np.bool_]) -> Agreement:
+    """All sums are of numbers up to 2, as squares of the largest and of the smallest numbers are none."""
+    unit, at = first.unit(name), first.time[common]
+    try:
+        theirs = second.values(name, unit)
+    except ValueError as error:
+        others = "name the columns to compare"
+        raise ValueError(f"{error}; {others}" if name in second else str(error)) from None
+    ours = first[name][common]
+    scale = max(np.abs(ours).max(), np.abs(theirs).max()) or 1.0
+    ours, theirs = ours / scale, theirs / scale
+    if not np.array_equal(second.time, at):  # between samples on a straight line
+        with np.errstate(over="ignore", invalid="ignore"):  # a jump within no time; what is not finite is refused below
+            theirs = np.interp(at, second.time, theirs)
+    difference = theirs - ours
+    worst = int(np.argmax(np.abs(difference)))
+    with np.errstate(over="ignore"):
+        rms, largest = (float(scale * part) for part in (np.sqrt(np.mean(difference**2)), abs(difference[worst])))
+    if not isfinite(largest):
+        raise ValueError(f"column {quoted(name)} differs by more than the largest number there is, at t = {at[worst]:g} s")
+    return Agreement(name, unit, rms, largest, float(at[worst]), _correlation(ours, theirs), len(at))
+
+
+def _correlation(first: Array, second: Array) -> float | None:
+    """Pearson's coefficient; None where one of them does not change."""
+    deviations = [values - values.mean() for values in (first, second)]
+    sizes = [np.abs(each).max() for each in deviations]
+    if min(np.ptp(first), np.ptp(second)) == 0.0 or min(sizes) == 0.0:
+        return None
+    one, other = (each / size for each, size in zip(deviations, sizes, strict=True))
+    return float(np.clip((one @ other) / np.sqrt((one @ one) * (other @ other)), -1.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Difference(Statement):
+    """A place where two models differ.
+
+    Attributes:
+        path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", or of a rating
+        first, second: the numbers, or the models' names; None where one of them does not have it
+        unit: of the numbers, empty for names
+        sigma: standard deviation of the second less the first, as if they were independent; None unless both sets state one
+
+    >>> import strainwave as sw
+    >>> gear = sw.load("csg-25-100")
+    >>> (difference,) = sw.compare(gear, gear.replace({"stiffness.k1": 0.8 * gear.stiffness.k1}))
+    >>> difference.path, round(difference.change, 3)
+    ('gear.stiffness.k1', -0.2)
+    """
+
+    path: str
+    first: float | str | None
+    second: float | str | None
+    unit: str = ""
+    sigma: float | None = None
+
+    @property
+    def deviations(self) -> float | None:
+        """The second less the first in standard deviations; None where none is stated, or it is 0."""
+        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or not self.sigma:
+            return None
+        return (self.second - self.first) / self.sigma
+
+    @property
+    def change(self) -> float | None:
+        """The second less the first, relative to the first; None where that is no number."""
+        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or self.first == 0:
+            return None
+        change = (self.second - self.first) / self.first
+        return change if isfinite(change) else None
+
+    def _headline(self) -> str:
+        unit = "" if self.unit in ("", "1") else f" {self.unit}"
+        first, second = (text if value is None else text + unit for text, value in zip(self.texts, self._values, strict=True))
+        parts = [f"{100.0 * self.change:+.3g} %"] if self.change is not None else []
+        parts += [f"{self.deviations:+.2g} σ"] if self.deviations is not None else []
+        change = f" ({', '.join(parts)})" if parts else ""
+        return f"{self.path}: {first} against {second}{change}"
+
+    @property
+    def texts(self) -> tuple[str, str]:
+        """Return both numbers or names as texts, without their unit; numbers with so many digits that they differ."""
+        digits = next(digits for digits in (6, 10, 17) if digits == 17 or len({_shown(v, digits) for v in self._values}) == 2)
+        first, second = (_shown(value, digits) for value in self._values)
+        return first, second
+
+    @property
+    def _values(self) -> tuple[float | str | None, float | str | None]:
+        return self.first, self.second
+
+
+def _shown(value: float | str | None, digits: int) -> str:
+    return "nothing" if value is None else value if isinstance(value, str) else f"{value:.{digits}g}"
+
+
+def differences(first: Model, second: Model) -> list[Difference]:
+    """Return every number and every law in which two models differ; see `compare`."""
+    ours, theirs = _parts(first), _parts(second)
+    if isinstance(first, Gear) or isinstance(second, Gear):
+        return _between("gear", ours["gear"], theirs["gear"])
+    differing = [difference for name in ours for difference in _between(name, ours[name], theirs[name])]
+    if not (isinstance(first, GearSet) and isinstance(second, GearSet)):
+        return differing
+    for place, each in enumerate(differing):
+        if isinstance(each.first, float | int) and isinstance(each.second, float | int):
+            one, other = first.sources[each.path].sigma(each.first), second.sources[each.path].sigma(each.second)
+            if one is not None and other is not None:
+                differing[place] = replace(each, sigma=hypot(one, other))
+    return differing + _ratings(first, second)
+
+
+def _parts(model: Model) -> dict[str, Any]:
+    """The parts of a drive by name; None where a set does not have one."""
+    return {"gear": model} if isinstance(model, Gear) else {each.name: getattr(model, each.name) for each in parts(Drive())}
+
+
+def _between(path: str, first: Any, second: Any) -> list[Difference]:
+    if type(first) is not type(second):
+        one, other = (None if each is None else str(each.name) for each in (first, second))
+        return [Difference(path, one, other)]
+    if first is None:
+        return []
+    differing: list[Difference] = []
+    for number in parameters(first):
+        one, other = getattr(first, number.name), getattr(second, number.name)
+        for place, pair in _pairs(f"{path}.{number.name}", one, other):
+            if pair[0] != pair[1]:
+                differing.append(Difference(place, *pair, number.unit or ""))
+    for part in parts(first):
+        differing += _between(f"{path}.{part.name}", getattr(first, part.name), getattr(second, part.name))
+    return differing
+
+
+def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any]]]:
+    """The two numbers at each place; None where one of two sequences has ended."""
+    if isinstance(first, float | int | str):
+        return [(path, (first, second))]
+    return [(f"{path}[{i}]", pair) for i, pair in enumerate(zip_longest(first, second))]
+
+
+def _ratings(first: GearSet, second: GearSet) -> list[Difference]:
+    """The ratings that differ, in the unit of the first set."""
+    differing = []
+    for name in [*first.ratings, *(name for name in second.ratings if name not in first.ratings)]:
+        ratings = [of.ratings.get(name) for of in (first, second)]
+        unit = next(rating.unit for rating in ratings if rating is not None)
+        with at(f"ratings.{name}:"):
+            one, other = (None if rating is None else float(rating.to(unit).value) for rating in ratings)
+        if one != other:
+            differing.append(Difference(f"ratings.{name}", one, other, unit))
+    return differing
 
 
 @overload

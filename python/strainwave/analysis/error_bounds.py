@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -19,9 +18,7 @@ from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
 
-TYPICAL_SHARE = (
-    0.5  # of the maker's bound, that an assumed hysteresis or kinematic error of a set is: docs/reference/catalogue.md
-)
+TYPICAL_SHARE = 0.5  # of the maker's bound, that an assumed hysteresis or error of a set is: docs/reference/catalogue.md
 ASSUMED_SPREAD = 0.3  # of a stiffness without a stated spread
 BOUND_SIGMA = 3.0  # standard deviations of an identified number, up to which its bound reaches
 ANGLES_PER_TURN = 3600  # of the input
@@ -90,31 +87,23 @@ def positioning_error(gear: GearSet | Drive | Gear | str | Path, *, load: float 
         raise ValueError(f"{gear_set.name} has no rating rated_torque; give a load [N.m]")
     load = rated if load is None else arguments.number("load", load, "N.m", low=0.0, high=MAX_LOAD)
     assert load is not None
-    found = [_kinematic(gear_set), _wind_up(gear_set, load), _loop(gear_set, load)]
-    if rated is not None:
-        found.append(_lost_motion(gear_set, LOST_MOTION_SHARE * rated))
-    return tuple(found)
-
-
-def _kinematic(gear_set: GearSet) -> ErrorBound:
     angle = np.linspace(0.0, 2.0 * pi, ANGLES_PER_TURN, endpoint=False)
-    typical = float(np.ptp(np.asarray(gear_set.gear.kinematic_error.error(angle))))
-    return _bounded("kinematic error, peak to peak", typical, gear_set, "kinematic_error")
-
-
-def _wind_up(gear_set: GearSet, load: float) -> ErrorBound:
+    error = float(np.ptp(np.asarray(gear_set.gear.kinematic_error.error(angle))))
     twist = float(np.abs(np.asarray(gear_set.gear.twist(np.array([0.0, load]))))[-1])
-    return _bounded(f"wind-up at {load:g} N·m", twist, gear_set, "stiffness")
+    bounds = [
+        _bounded("kinematic error, peak to peak", error, gear_set, "kinematic_error"),
+        _bounded(f"wind-up at {load:g} N·m", twist, gear_set, "stiffness"),
+        _loop(gear_set, load),
+    ]
+    if rated is not None:
+        bounds.append(_lost_motion(gear_set, LOST_MOTION_SHARE * rated))
+    return tuple(bounds)
 
 
 def _loop(gear_set: GearSet, load: float) -> ErrorBound:
-    return _bounded(f"loop at no torque after ±{load:g} N·m", _width(gear_set.gear, load), gear_set, "hysteresis")
-
-
-def _width(gear: Gear, load: float) -> float:
-    """Return the width of the loop at no torque between two loads [rad]."""
-    path = np.asarray(gear.twist(load * np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0])))
-    return float(abs(path[-1] - path[-3]))
+    """Return the width of the loop at no torque between two loads."""
+    path = np.asarray(gear_set.gear.twist(load * np.array([0.0, 1.0, 0.0, -1.0, 0.0, 1.0, 0.0])))
+    return _bounded(f"loop at no torque after ±{load:g} N·m", float(abs(path[-1] - path[-3])), gear_set, "hysteresis")
 
 
 def _lost_motion(gear_set: GearSet, torque: float) -> ErrorBound:
@@ -135,8 +124,15 @@ def _factor(gear_set: GearSet, part: str) -> tuple[float, str]:
     begin = f"gear.{part}."
     all_numbers = every(Drive(gear=gear_set.gear)).items()
     numbers = {path: each.value for path, each in all_numbers if path.startswith(begin) and each.value}
-    sources = {path: entry for path, entry in gear_set.sources.items() if path.partition("[")[0] in _names(numbers)}
-    deviations = _relative_deviations(gear_set, numbers)
+    names = {path.partition("[")[0] for path in numbers}
+    sources = {path: entry for path, entry in gear_set.sources.items() if path.partition("[")[0] in names}
+    deviations = []
+    if gear_set.covariance is not None:
+        sigmas = np.sqrt(np.diag(np.asarray(gear_set.covariance.array))).tolist()
+        identified = zip(gear_set.covariance.paths, sigmas, strict=True)
+        deviations = [
+            sigma / abs(numbers[path]) for path, sigma in identified if path in numbers and not path.endswith("phase")
+        ]
     if deviations:
         spread = BOUND_SIGMA * max(deviations)
         return 1.0 + spread, f"{part.replace('_', ' ')} is identified: three standard deviations, {100.0 * spread:.2g} %"
@@ -144,15 +140,3 @@ def _factor(gear_set: GearSet, part: str) -> tuple[float, str]:
         return 1.0 / TYPICAL_SHARE, f"{part.replace('_', ' ')} is assumed: a typical gear has half of the maker's bound"
     spread = max((entry.spread for entry in sources.values() if entry.spread), default=ASSUMED_SPREAD)
     return 1.0 + spread, f"{part.replace('_', ' ')} of single gears differs by {100.0 * spread:.3g} %"
-
-
-def _names(paths: Iterable[str]) -> set[str]:
-    return {path.partition("[")[0] for path in paths}
-
-
-def _relative_deviations(gear_set: GearSet, numbers: dict[str, float]) -> list[float]:
-    if gear_set.covariance is None:
-        return []
-    sigma = np.sqrt(np.diag(np.asarray(gear_set.covariance.array)))
-    known = zip(gear_set.covariance.paths, sigma.tolist(), strict=True)
-    return [deviation / abs(numbers[path]) for path, deviation in known if path in numbers and not path.endswith("phase")]

@@ -11,21 +11,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from math import tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, Gear, _core, arguments, friction, motor
-from strainwave.analysis.continuous import continuous, state_within
-from strainwave.analysis.steady import OVERFLOW, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
+from strainwave import Drive, Gear, _core, arguments, control, friction, motor, sensor
+from strainwave.analysis.steady import OVERFLOW_REASON, QUASI_STATIC_TIME, averaged, constant_inputs, equilibrium
 from strainwave.equality import ComparedByFields
 from strainwave.files.units import ratio_of_units
 from strainwave.presentation import Pictured, Row, counted
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.simulation.memory import room_for
-from strainwave.simulation.signals import TWIST, check_continuous, command_unit, outputs, units
+from strainwave.simulation.signals import TWIST_CHANNEL, check_continuous, command_unit, outputs, units
 from strainwave.simulation.state import State, StateLayout, start_of
+from strainwave.simulation.time_grid import room_for
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,9 +36,56 @@ MIN_GROWTH_SHARE = 1e-9  # of a pole that grows: its real part over its size; be
 MIN_RELATIVE_POLE = 1e-6  # over the largest; a smaller one is 0 but for rounding
 DRAWN_FREQUENCIES = 600  # of a Bode diagram
 HOLDING_TORQUE = 1e30  # N.m: more than any torque that turns an input
-DAMPINGS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
-INPUTS = ("command", "command_rate", "load_torque", "temperature")
-_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
+DAMPING_UNITS = ("N.m.s/rad", "N.s/m")  # units of what damps a body within the gear
+LINEAR_INPUTS = ("command", "command_rate", "load_torque", "temperature")
+_INPUT_COLUMNS = [0, 1, 2, 4]  # of these among the inputs that the core knows; nothing depends on the rates of the others
+
+
+def continuous(drive: Drive) -> tuple[Drive, tuple[str, ...]]:
+    """Return a drive without what has no linear model, and a note on each part that was left out.
+
+    A sampled controller becomes its law, a sensor with noise, steps or counts the one within it. Energy is not measured, and
+    the drive does not warm up.
+
+    >>> import strainwave as sw
+    >>> law = sw.control.PID(proportional=2.0, derivative=0.05)
+    >>> plain, notes = continuous(sw.Drive(control=sw.control.Sampled(law=law, period=1e-3, delay=2e-4)))
+    >>> plain.control == law, notes
+    (True, ('control: sampling every 0.001 s with a delay of 0.0002 s is left out, as is a compensation',))
+    """
+    parts = {name: (part, note) for name, part, note in _replaced(drive)}
+    plain = drive.replace(**{name: part for name, (part, _) in parts.items()})
+    return plain, tuple(note for _, note in parts.values())
+
+
+def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
+    sampled = drive.control
+    if isinstance(sampled, control.Sampled):
+        times = f"sampling every {sampled.period:g} s with a delay of {sampled.delay:g} s"
+        yield "control", sampled.law, f"control: {times} is left out, as is a compensation"
+    whole = {field["name"]: getattr(drive.sensors, field["name"]) for field in drive.sensors.fields}
+    smooth = dict(whole)
+    for name, part in whole.items():
+        while isinstance(part, (sensor.Noisy, sensor.Quantised)):
+            part = part.law
+        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder) else part
+    if changed := [name for name, part in whole.items() if smooth[name] is not part]:
+        yield (
+            "sensors",
+            drive.sensors.replace(**smooth),
+            f"sensors.{', sensors.'.join(changed)}: noise, steps and counts are left out",
+        )
+    for name, left_out in (("meter", "energy is not measured"), ("thermal", "the drive does not warm up")):
+        if not isinstance(getattr(drive, name), kind := type(getattr(Drive(), name))):
+            yield name, kind(), f"{name}: {left_out}"
+
+
+def state_within(plain: Drive, state: State) -> State:
+    """Return the state of a drive as that of the same drive by `continuous`; what it lacks has its value at rest."""
+    numbers = {name.replace("control.law.", "control."): value for name, value in state.items()}
+    numbers |= {name.replace(".law.", "."): value for name, value in numbers.items() if name.startswith("sensors.")}
+    rest = plain.rest()
+    return rest.replace({name: numbers[name] for name in rest if name in numbers})
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,15 +150,13 @@ class Linearisation(ComparedByFields, Pictured):
     @property
     def eigenfrequencies(self) -> Array:
         """Return the undamped natural frequency of each pole, its distance from 0 [rad/s], shape (n,)."""
-        size: Array = np.abs(self.poles)
-        return size
+        return np.asarray(np.abs(self.poles))
 
     @property
     def damping_ratios(self) -> Array:
         """Return the damping ratio of each pole, shape (n,): 1 aperiodic, 0 undamped, below 0 unstable; NaN for a pole at 0."""
         size = self.eigenfrequencies
-        ratios: Array = np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0)
-        return ratios
+        return np.asarray(np.divide(-self.poles.real, size, out=np.full(len(size), np.nan), where=size > 0.0))
 
     def plot(self, frequency: ArrayLike | None = None, output: str = "output_angle", input: str = "command") -> Figure:
         """Return the Bode diagram of an output over an input: magnitude [unit of the output / of the input], phase [deg].
@@ -126,22 +170,18 @@ class Linearisation(ComparedByFields, Pictured):
         """
         from strainwave.analysis.plots import Response, bode_figure
 
-        frequencies = (
-            self._drawn_frequencies() if frequency is None else np.atleast_1d(arguments.numbers("frequency", frequency))
-        )
+        if frequency is None:
+            size = self.eigenfrequencies
+            size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau
+            if not size.size:
+                raise ValueError("frequency must be given: all poles are 0")
+            frequency = np.geomspace(0.1 * size.min(), 10.0 * size.max(), DRAWN_FREQUENCIES)
+        frequencies = np.atleast_1d(arguments.numbers("frequency", frequency))
         if frequencies.size == 0 or frequencies.min() <= 0.0:
             raise ValueError("frequency must have one positive number [Hz] or more; the axis is logarithmic")
         response = self.response(frequencies, output, input)
         title = f"Linear response of {output.replace('_', ' ')} to {input.replace('_', ' ')}"
         return bode_figure([Response("", frequencies, response)], ratio_of_units(self.units[output], self.units[input]), title)
-
-    def _drawn_frequencies(self) -> Array:
-        """Return the frequencies at which a response is drawn [Hz]."""
-        size = self.eigenfrequencies
-        size = size[size > MIN_RELATIVE_POLE * size.max(initial=0.0)] / tau
-        if not size.size:
-            raise ValueError("frequency must be given: all poles are 0")
-        return np.geomspace(0.1 * size.min(), 10.0 * size.max(), DRAWN_FREQUENCIES)
 
     def response(self, frequency: ArrayLike, output: str = "output_angle", input: str = "command") -> Complex:
         """Amplitude and phase of an output over those of an input that is a sine.
@@ -185,8 +225,7 @@ class Linearisation(ComparedByFields, Pictured):
             rate = self.inputs.index("command_rate")
             b, d = b + at * self.B[:, rate], d + at * self.D[row, rate]
         states = np.linalg.solve(at[..., None] * np.eye(len(self.A)) - self.A, b[..., None])[..., 0]
-        answer: Complex = states @ self.C[row] + d[..., 0]
-        return answer
+        return np.asarray(states @ self.C[row] + d[..., 0])
 
     def _headline(self) -> str:
         unstable = int((self.poles.real > MIN_GROWTH_SHARE * np.abs(self.poles)).sum())
@@ -263,22 +302,26 @@ def linearise(
         drive = averaged(drive)
     slopes = [_core.differentiate_rates(drive, _vibrating(state, drive, inputs, sense), inputs)[1] for sense in (1.0, -1.0)]
     if not all(np.isfinite(each).all() for each in slopes):
-        raise ValueError(f"the drive cannot be linearised: {OVERFLOW}")
+        raise ValueError(f"the drive cannot be linearised: {OVERFLOW_REASON}")
     layout = StateLayout(drive)
     count = layout.count
     shown = outputs(drive)
     rows = [*range(count), *(count + each.channel for each in shown.values())]
     by_numbers, by_inputs = np.split((0.5 * slopes[0].T + 0.5 * slopes[1].T)[rows], [count], axis=1)
-    by_inputs = by_inputs[:, _COLUMNS]
+    by_inputs = by_inputs[:, _INPUT_COLUMNS]
     kept = _moving(state, layout)
-    by_numbers = by_numbers @ _tied(state, layout)
+    tied = np.eye(layout.count)
+    if state.output_slip_direction == 0.0:  # while the output sticks, the transmission error goes with the input
+        tied[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
+    by_numbers = by_numbers @ tied
     while dead := [place for place in kept if not _matters(place, by_numbers, kept)]:
         kept = [place for place in kept if place not in dead]
     (a, c), (b, d) = np.split(by_numbers[:, kept], [count]), np.split(by_inputs, [count])
-    known = layout.units | units(drive, shown.values()) | _input_units(drive)
+    of_inputs = {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
+    all_units = layout.units | units(drive, shown.values()) | of_inputs
     states = tuple(layout.names[place] for place in kept)
-    chosen = {name: known[name] for name in (*states, *INPUTS, *shown)}
-    return Linearisation(a[kept], b[kept], c, d, states, INPUTS, tuple(shown), chosen, notes)
+    chosen = {name: all_units[name] for name in (*states, *LINEAR_INPUTS, *shown)}
+    return Linearisation(a[kept], b[kept], c, d, states, LINEAR_INPUTS, tuple(shown), chosen, notes)
 
 
 def modes(drive: Drive) -> dict[str, Array]:
@@ -307,7 +350,7 @@ def modes(drive: Drive) -> dict[str, Array]:
     arguments.drive(drive)
     same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
-    damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPINGS]
+    damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPING_UNITS]
     gear = gear.replace(structure=gear.structure.replace(dict.fromkeys(damped, 0.0)))
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HOLDING_TORQUE, breakaway=HOLDING_TORQUE)))
@@ -316,14 +359,13 @@ def modes(drive: Drive) -> dict[str, Array]:
 
 def _frequencies(drive: Drive) -> Array:
     """Return the frequencies of the pairs of poles that vibrate [rad/s]."""
-    linear = linearise(drive, drive.rest())
-    found: Array = np.sort(linear.poles.imag[linear.poles.imag > 0.0])
-    return found
+    poles = linearise(drive, drive.rest()).poles
+    return np.asarray(np.sort(poles.imag[poles.imag > 0.0]))
 
 
 def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array:
     """`state` as a vibration finds it that is too small to change it and just passes in one `sense`, not for the first time."""
-    twist = _core.now(drive, state.numbers, inputs)[TWIST].item()
+    twist = _core.now(drive, state.numbers, inputs)[TWIST_CHANNEL].item()
     little, ratio = 1e-12 * max(abs(twist), 1e-3), abs(drive.gear.kinematics.ratio)
     at_rest = state.input_speed == state.output_speed == 0.0
 
@@ -339,13 +381,13 @@ def _vibrating(state: State, drive: Drive, inputs: Array, sense: float) -> Array
             .numbers
         )
 
-    found = state.numbers
+    numbers = state.numbers
     for way in (1.0, -2.0, 1.0):
         twist += way * little
-        found = _core.advance_hysteresis(drive, found, twist)
+        numbers = _core.advance_hysteresis(drive, numbers, twist)
         if at_rest:
-            found = _core.relaxed(drive, passing(found, way), inputs, QUASI_STATIC_TIME)
-    return passing(_core.advance_hysteresis(drive, found, twist - 0.5 * sense * little), sense)
+            numbers = _core.relaxed(drive, passing(numbers, way), inputs, QUASI_STATIC_TIME)
+    return passing(_core.advance_hysteresis(drive, numbers, twist - 0.5 * sense * little), sense)
 
 
 def _moving(state: State, layout: StateLayout) -> list[int]:
@@ -358,22 +400,10 @@ def _moving(state: State, layout: StateLayout) -> list[int]:
     return [place for place, name in enumerate(layout.names[: layout.count]) if name.partition(".")[0] not in stuck]
 
 
-def _tied(state: State, layout: StateLayout) -> Array:
-    """The numbers by those that move, columns: while the output sticks, the transmission error goes with the input."""
-    moved = np.eye(layout.count)
-    if state.output_slip_direction == 0.0:
-        moved[layout.places["transmission_error"], layout.places["input_angle"]] = 1.0 / state.drive.gear.kinematics.ratio
-    return moved
-
-
 def _matters(place: int, by_numbers: Array, kept: list[int]) -> bool:
     """True if another number or an output depends on a number."""
     others = [row for row in kept if row != place]
     return bool(by_numbers[others, place].any() or by_numbers[by_numbers.shape[1] :, place].any())
-
-
-def _input_units(drive: Drive) -> dict[str, str]:
-    return {"command_rate": f"{command_unit(drive)}/s", "load_torque": "N.m", "temperature": "K"}
 
 
 def _place(name: str, names: tuple[str, ...], kind: str) -> int:

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from strainwave import Drive
-from strainwave.analysis.agreement import Agreement
-from strainwave.analysis.compare import compare
+from strainwave.analysis.compare import Agreement, compare
 from strainwave.files.recording import Recording
 from strainwave.presentation import Pictured, Row
 from strainwave.simulation.run import Run, simulate
@@ -49,10 +48,10 @@ class MeasuredCommand(Pictured):
             ValueError: the file cannot be read, lacks a column, has fewer than two rows, or a column is no angle
         """
         names = ("time", "command", "output_angle")
-        found = Recording.read(path, columns={name: name for name in names})
-        if len(found) < MIN_ROWS:
-            raise ValueError(f"{path} has {len(found)} rows; a run needs {MIN_ROWS} or more")
-        columns = {"time": found.time - found.time[0]} | {name: found.values(name, "rad") for name in names[1:]}
+        recording = Recording.read(path, columns={name: name for name in names})
+        if len(recording) < MIN_ROWS:
+            raise ValueError(f"{path} has {len(recording)} rows; a run needs {MIN_ROWS} or more")
+        columns = {"time": recording.time - recording.time[0]} | {name: recording.values(name, "rad") for name in names[1:]}
         return cls(Recording(columns, {"time": "s", "command": "rad", "output_angle": "rad"}, title=Path(path).name))
 
     def run(self, drive: Drive) -> Run:

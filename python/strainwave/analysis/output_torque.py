@@ -20,7 +20,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-USED = ("gear.stiffness.", "gear.hysteresis.", "gear.kinematic_error.", "gear.damping")  # numbers that the torque depends on
+TORQUE_NUMBERS = (
+    "gear.stiffness.",
+    "gear.hysteresis.",
+    "gear.kinematic_error.",
+    "gear.damping",
+)  # numbers that the torque depends on
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,11 +115,7 @@ def output_torque(
 
 
 def _angles(input_angle: ArrayLike, output_angle: ArrayLike) -> Array:
-    """Return the angles of both shafts, shape (2, n).
-
-    Raises:
-        ValueError: they are not finite, or not equally many
-    """
+    """Return the angles of both shafts, shape (2, n)."""
     of_input = np.atleast_1d(arguments.numbers("input_angle", input_angle))
     of_output = np.atleast_1d(arguments.numbers("output_angle", output_angle))
     if of_input.ndim != 1 or of_input.shape != of_output.shape:
@@ -128,10 +129,7 @@ def _angles(input_angle: ArrayLike, output_angle: ArrayLike) -> Array:
 
 
 def check_static(gear: Gear, name: str) -> None:
-    """
-    Raises:
-        ValueError: the twist alone does not determine the torque of a gear
-    """
+    """"""
     for part, plain in (("structure", structure.Lumped), ("stiffness_variation", variation.Constant)):
         if not isinstance(found := getattr(gear, part), plain):
             raise ValueError(
@@ -156,7 +154,7 @@ def _sigma(gear_set: GearSet, angles: Array, zero: float, time: Array | None) ->
     """Return the standard deviation of the torque: slopes over a standard deviation of each number, times the covariance."""
     if gear_set.covariance is None:
         return np.full(angles.shape[1], np.nan)
-    chosen = [place for place, path in enumerate(gear_set.covariance.paths) if path.startswith(USED)]
+    chosen = [place for place, path in enumerate(gear_set.covariance.paths) if path.startswith(TORQUE_NUMBERS)]
     covariance = np.asarray(gear_set.covariance.array)[np.ix_(chosen, chosen)]
     drive, slopes = Drive(gear=gear_set.gear), np.zeros((len(chosen), angles.shape[1]))
     for row, (place, deviation) in enumerate(zip(chosen, np.sqrt(np.diag(covariance)), strict=True)):

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 BODE_HEIGHT = 4.2  # inches
 PHASE_STEPS = (1.0, 5.0, 15.0, 45.0, 90.0, 180.0, 360.0)  # degrees between two ticks
 MAX_PHASE_TICKS = 6
@@ -25,13 +26,7 @@ MAX_BARS = 12  # parameters that are drawn, the strongest
 
 
 class Response(NamedTuple):
-    """A response over the frequency, to be drawn.
-
-    Attributes:
-        label: in the legend; none if empty
-        frequency: [Hz], shape (k,)
-        response: shape (k,)
-    """
+    """A response over the frequency [Hz], both of shape (k,), to be drawn; in the legend if it has a label."""
 
     label: str
     frequency: Array
@@ -39,13 +34,7 @@ class Response(NamedTuple):
 
 
 def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
-    """Return a Bode diagram: magnitude with its unit, and phase, over the frequency.
-
-    Args:
-        responses: one or several
-        unit: of the magnitude
-        title: of the figure
-    """
+    """Return a Bode diagram: magnitude with its unit, and phase, over the frequency."""
     with marks.new_figure(BODE_HEIGHT, title) as figure:
         magnitude, phase = figure.subplots(2, 1, sharex=True)
         for place, (label, frequency, response) in enumerate(responses):
@@ -77,33 +66,19 @@ def set_phase_ticks(axes: Axes) -> None:
 def phase_in_degrees(response: NDArray[np.complex128]) -> Array:
     """Return the phase without jumps [deg], from between -360 and 0 on."""
     phase = np.degrees(np.unwrap(np.angle(response)))
-    shift = 360.0 * np.ceil((phase[0] - 1.0) / 360.0)  # a phase of rounding about 0 stays there
-    unwrapped: Array = phase - shift
-    return unwrapped
+    return np.asarray(phase - 360.0 * np.ceil((phase[0] - 1.0) / 360.0))  # a phase of rounding about 0 stays there
 
 
 def sensitivity_figure(effects: Mapping[str, float], unit: str, output: str, percent: float) -> Figure:
-    """Return bars of the effects of parameters on an output, the largest first.
-
-    Args:
-        effects: root mean square change of the output, by the path of each parameter
-        unit: of the output
-        output: its name in words
-        percent: change of each parameter [%]
-    """
+    """Return bars of the effects of parameters on an output, the largest first, of a change of each by some percent."""
     strongest = sorted(effects, key=lambda path: -effects[path])[:MAX_BARS]
     which = f"the {MAX_BARS} strongest of {len(effects)} parameters" if len(effects) > MAX_BARS else "parameters"
     with marks.new_figure(MARGIN_HEIGHT + BAR_HEIGHT * len(strongest), f"Sensitivity of {output} to {which}") as figure:
         axes = figure.subplots()
-        _bars(axes, strongest, [effects[path] for path in strongest])
+        axes.barh(range(len(strongest)), [effects[path] for path in strongest], height=0.7, color=LIGHT["measured"])
+        axes.set_yticks(range(len(strongest)), strongest, fontsize="small")
+        axes.set_ylim(len(strongest) - 0.5, -0.5)  # the first one on top
+        axes.grid(visible=False, axis="y")
+        axes.tick_params(axis="y", length=0.0)
         marks.label_abscissa(axes, f"rms change by + {percent:g} %", unit)
     return figure
-
-
-def _bars(axes: Axes, names: Sequence[str], values: Sequence[float]) -> None:
-    """Draw horizontal bars, the first one on top."""
-    axes.barh(range(len(names)), values, height=0.7, color=LIGHT["measured"])
-    axes.set_yticks(range(len(names)), names, fontsize="small")
-    axes.set_ylim(len(names) - 0.5, -0.5)
-    axes.grid(visible=False, axis="y")
-    axes.tick_params(axis="y", length=0.0)

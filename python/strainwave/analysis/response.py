@@ -19,12 +19,12 @@ from strainwave.messages import listed, quoted
 from strainwave.native import kernels
 from strainwave.presentation import Pictured, Row
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.memory import check_instants
 from strainwave.simulation.resolution import check_resolution, warn_of_bristles
 from strainwave.simulation.run import beginning, recording
 from strainwave.simulation.scenario import MIN_DURATION, constant, sine
 from strainwave.simulation.signals import check_continuous, command_unit, outputs as outputs_of, units as units_of
 from strainwave.simulation.state import State, start_of
+from strainwave.simulation.time_grid import check_instants
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +35,7 @@ Complex = NDArray[np.complex128]
 _MIN_STEPS_PER_PERIOD = 64  # harmonics up to the 31st
 _MIN_FREQUENCY = 1e-300  # Hz: its period is still finite
 _MIN_AMPLITUDE = 1e-100  # a quotient by it is still finite
-_SINES = ("command", "load_torque")
+_SINE_INPUTS = ("command", "load_torque")
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,12 +77,7 @@ class FrequencyResponse(ComparedByFields, Pictured):
     units: dict[str, str]
 
     def plot(self, output: str = "output_angle") -> Figure:
-        """Return the Bode diagram of an output: magnitude [unit of the output / unit of the input] and phase [deg].
-
-        Raises:
-            ValueError: there is no such output
-            TypeError: the name is no text
-        """
+        """Return the Bode diagram of an output: magnitude [unit of the output / unit of the input] and phase [deg]."""
         from strainwave.analysis.plots import Response, bode_figure
         from strainwave.typeset import quantity
 
@@ -179,27 +174,34 @@ def frequency_response(
         drive = averaged(drive)
     warn_of_bristles(drive, max(_step(1.0 / f, dt) for f in frequencies.tolist()))
     sines = _Sines(drive, initial.numbers, dt)
-    found = []
+    answers = []
     for f in frequencies.tolist():
         levels = {"command": constant(command, 1.0 / f), "load_torque": constant(load_torque, 1.0 / f)}
         levels[input] = levels[input] + sine(amplitude, f, 1.0 / f)
         excitation = Excitation(levels["command"], levels["load_torque"], temperature)
-        found.append(sines.periodic(excitation, tolerance, max_periods))
-    known = {"load_torque": "N.m"} | units_of(drive, outputs_of(drive).values()) | {"command": command_unit(drive)}
-    return _response(frequencies, amplitude, [period for period, _ in found], [count for _, count in found], input, known)
+        answers.append(sines.periodic(excitation, tolerance, max_periods))
+    all_units = {"load_torque": "N.m"} | units_of(drive, outputs_of(drive).values()) | {"command": command_unit(drive)}
+    return _response(
+        frequencies, amplitude, [period for period, _ in answers], [count for _, count in answers], input, all_units
+    )
 
 
 def _response(
-    frequencies: Array, amplitude: float, found: list[dict[str, Array]], counts: list[int], input: str, known: dict[str, str]
+    frequencies: Array,
+    amplitude: float,
+    periods: list[dict[str, Array]],
+    counts: list[int],
+    input: str,
+    all_units: dict[str, str],
 ) -> FrequencyResponse:
     """Return the response from the outputs over one period of each frequency, and its number."""
     responses, distortions, drifts = {}, {}, {}
-    for name in found[0]:
-        first, higher = np.array([_harmonics(period[name]) for period in found]).T
+    for name in periods[0]:
+        first, higher = np.array([_harmonics(period[name]) for period in periods]).T
         responses[name] = first / amplitude
         distortions[name] = higher.real / np.maximum(np.abs(first), np.finfo(float).tiny)
-        drifts[name] = np.array([period[name][-1] - period[name][0] for period in found])
-    units = {name: known[name] for name in dict.fromkeys((input, *responses))}
+        drifts[name] = np.array([period[name][-1] - period[name][0] for period in periods])
+    units = {name: all_units[name] for name in dict.fromkeys((input, *responses))}
     return FrequencyResponse(frequencies, amplitude, responses, distortions, drifts, np.array(counts), input, units)
 
 
@@ -209,7 +211,7 @@ def _check(frequencies: Array, signal: str, dt: float) -> None:
     for frequency in frequencies.tolist():
         arguments.number("frequency", frequency, "Hz", "[]", _MIN_FREQUENCY, 1.0 / MIN_DURATION)
         check_instants(1.0 / frequency, dt, "take a higher frequency, or a longer dt")
-    arguments.one_of("input", signal, _SINES)
+    arguments.one_of("input", signal, _SINE_INPUTS)
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 # Numbers by which there is no derivative, by their path or its last name, and why.
 NO_MEASURE = {
     "control.period": (WHEN := "it determines when something happens, not how much of it"),
@@ -105,8 +106,7 @@ class Derivatives(ComparedByFields, Pictured):
             raise ValueError(f"no output {quoted(output)}; there are {listed(outputs)}")
         if path not in self.parameters:
             raise ValueError(f"no derivatives by {quoted(path)}; there are those by {listed(self.parameters)}")
-        derivative: Array = self.values[list(self.parameters).index(path), outputs.index(output)]
-        return derivative
+        return np.asarray(self.values[list(self.parameters).index(path), outputs.index(output)])
 
     def __reduce__(self) -> tuple[type[Derivatives], tuple[object, ...]]:
         return Derivatives, (self.run, dict(self.parameters), dict(self.numbers), self.values)

@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, arguments, kinematic_error, motor
 from strainwave.equality import ComparedByFields
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, check_temperature
-from strainwave.simulation.signals import TWIST, actuation, check_continuous, command_unit, controls_position
+from strainwave.simulation.signals import TWIST_CHANNEL, actuation, check_continuous, command_unit, controls_position
 from strainwave.simulation.state import State, StateLayout, start_of
 
 Array = NDArray[np.float64]
+
 QUASI_STATIC_TIME = 1e30  # s: of a motion that takes so long, friction depends on the path alone
 _ROUNDING_SHARE = 1e-14  # of the terms that cancel [1]
 MAX_ANGLE = 1e12  # rad of the input: beyond, where within a turn it stands is lost
 _NEGLIGIBLE_RATE = 1e-12  # rad/s2, A/s: a term so small has no effect
-OVERFLOW = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
+OVERFLOW_REASON = "torques or their derivatives grow beyond all numbers; check the parameters and the inputs"
 MAX_TIME_TO_REST, TIMES_TO_REST = 40.0, 8  # s, and instants at which a moving drive is looked at
 _MAX_INPUT_SPEED = 1e9  # rad/s: a drive that exceeds it has no steady speed
 
@@ -80,10 +81,10 @@ def equilibrium(
         except ValueError:
             if (numbers := _come_to_rest(drive, begin, inputs)) is None:
                 raise
-    found = State.of(drive, numbers)
-    _check_prescribed(balanced, found.numbers, inputs)
-    turns = round(found.input_angle / tau)
-    return found.replace(input_angle=found.input_angle - tau * turns, turns=found.turns + turns)
+    balanced_state = State.of(drive, numbers)
+    _check_prescribed(balanced, balanced_state.numbers, inputs)
+    turns = round(balanced_state.input_angle / tau)
+    return balanced_state.replace(input_angle=balanced_state.input_angle - tau * turns, turns=balanced_state.turns + turns)
 
 
 def _check_uncounted(drive: Drive) -> None:
@@ -186,19 +187,19 @@ def _resting(drive: Drive, start: Array, inputs: Array) -> Array | None:
     sliding = start
     while True:
         slow = _Slow(drive, sliding, inputs)
-        found = _balance(slow, slow.guess())
-        last = slow.moved(slow.guess() if found is None else found)
+        balance = _balance(slow, slow.guess())
+        last = slow.moved(slow.guess() if balance is None else balance)
         freed, place = _core.break_away(drive, last, inputs), slow.layout.places
-        if found is None:
+        if balance is None:
             freed = _pushed(drive, last, freed, inputs)
         directions = [place["input_slip_direction"].start, place["output_slip_direction"].start]
         if (freed[directions] == sliding[directions]).all():
             break
         sliding = sliding.copy()
         sliding[directions] = freed[directions]
-    if found is None:
+    if balance is None:
         return None
-    stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST].item()))
+    stopped = _at_rest(drive, _core.advance_hysteresis(drive, last, _core.now(drive, last, inputs)[TWIST_CHANNEL].item()))
     rates = Rates.of(drive, stopped, inputs)
     if abs(stopped[slow.layout.places["input_angle"].start]) > MAX_ANGLE:
         return None
@@ -224,8 +225,8 @@ def _come_to_rest(drive: Drive, start: Array, inputs: Array) -> Array | None:
                 now = run.end
         except (ValueError, FloatingPointError):
             return None
-        if (found := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
-            return found
+        if (resting := _resting(drive, _at_rest(drive, now.numbers), inputs)) is not None:
+            return resting
     return None
 
 
@@ -324,16 +325,16 @@ def _running(drive: Drive, start: Array, inputs: Array) -> Array:
             "motor, spring and friction together cannot hold the load at any angle near it"
         )
     steady = _Steady(drive, start, inputs)
-    found = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
-    if found is None:
+    balance = _balance(steady, steady.at(steady.guess())[: steady.layout.count])
+    if balance is None:
         raise ValueError(_unsteady(drive, inputs, "the torques do not balance at any speed"))
-    state = steady.moved(found)
+    state = steady.moved(balance)
     elsewhere = state.copy()
     elsewhere[steady.layout.places["input_angle"]] += 1.0
     rates = Rates.of(drive, elsewhere, inputs)
     if not rates.vanishes(steady.rows(rates), 1e-9):
         raise ValueError(_unsteady(drive, inputs, "load or friction depends on the angle that the drive turns through"))
-    return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST].item())
+    return _core.advance_hysteresis(drive, state, _core.now(drive, state, inputs)[TWIST_CHANNEL].item())
 
 
 def _unsteady(drive: Drive, inputs: Array, why: str) -> str:
@@ -372,7 +373,7 @@ class _Steady(ComparedByFields):
         state = _settled(drive, self.at(speed), inputs, [*_inner(self.layout), *_sensing(self.layout)])
         rates = Rates.of(drive, state, inputs)
         if not rates.finite:
-            raise ValueError(_unsteady(drive, inputs, OVERFLOW))
+            raise ValueError(_unsteady(drive, inputs, OVERFLOW_REASON))
         load: Any = drive.load  # one that has an inertia: `check_continuous`
         generator = 0.0 if _bodies(self.layout)[1] else drive.gear.input_inertia  # a body by itself has settled
         inertia = drive.motor.inertia + generator, load.inertia / drive.gear.kinematics.ratio
@@ -452,11 +453,11 @@ def _followed(moves: Array, rates: Rates, places: list[int]) -> Array:
     """The same moves, in columns, with the numbers at `places` moved so that their rates stay as they are."""
     if not places:
         return moves
-    found, count = moves.copy(), len(rates.rate)
+    followed, count = moves.copy(), len(rates.rate)
     by_themselves, by_moves = rates.by_numbers[places][:, places], (rates.by_numbers[:count] @ moves)[places]
     for column, right in enumerate(by_moves.T):
-        found[places, column] = _least(by_themselves, -right)
-    return found
+        followed[places, column] = _least(by_themselves, -right)
+    return followed
 
 
 @np.errstate(over="ignore", invalid="ignore")
@@ -468,7 +469,7 @@ def _balance(path: _Slow | _Steady, guess: Array) -> Array | None:
     numbers = guess
     rates = Rates.of(path.drive, path.moved(numbers), path.inputs)
     if not rates.finite:
-        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW_REASON}")
     for _ in range(100):
         rows = path.rows(rates)
         if rates.vanishes(rows, 1e-15):
@@ -499,7 +500,7 @@ def _least(matrix: Array, right: Array) -> Array:
     scaled, wanted = matrix / rows[:, None], right / rows
     changes = np.abs(scaled).max(axis=0, initial=0.0)
     if not (np.isfinite(scaled).all() and np.isfinite(wanted).all()):
-        raise ValueError(f"no equilibrium can be found: {OVERFLOW}")
+        raise ValueError(f"no equilibrium can be found: {OVERFLOW_REASON}")
     solution = np.linalg.lstsq(scaled / _positive(changes), wanted, rcond=1e-13)[0]
     return np.where(changes > 0.0, solution / _positive(changes), 0.0)
 

@@ -21,19 +21,19 @@ from strainwave.commands.diagnose import diagnose
 from strainwave.commands.docs import docs
 from strainwave.commands.doctor import doctor
 from strainwave.commands.export import export
-from strainwave.commands.help import Verbs
+from strainwave.commands.help import Verbs, Wing
 from strainwave.commands.identify import identify
 from strainwave.commands.list import list_command
 from strainwave.commands.orders import orders
 from strainwave.commands.plan import plan
 from strainwave.commands.predict import predict
-from strainwave.commands.rig import rig
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
 from strainwave.commands.workbench import workbench
 from strainwave.messages import one_line, unquoted, with_options
-from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError
+from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError, added_to
 
+rig = typer.Typer(cls=Wing, help="Plan, make and analyse tests of torsional stiffness.")
 # Verbs, and rooms of several verbs, under the headings of the help.
 HEADINGS: dict[str, dict[str, Any]] = {
     "From measurements": {"identify": identify, "predict": predict, "orders": orders, "plan": plan, "rig": rig},
@@ -115,9 +115,9 @@ def main() -> None:
             _print(f"strainwave: {question}\n", sys.stderr)
             sys.exit(code)
         asked.append(question.question)
-        if not (answer := _answer(question)):
+        if not (words := _answered(question)):
             sys.exit(code)
-        sys.argv += answer
+        sys.argv[1:] = words
 
 
 def _run() -> tuple[int, QuestionError | None]:
@@ -153,8 +153,8 @@ def _is_accepted(answer: Answer) -> bool:
     return answer.given.get("joint") != ALL_JOINTS or _is_one_of(WITH_ALL_JOINTS)
 
 
-def _answer(question: QuestionError) -> list[str]:
-    """Print a question. Return the words that answer it, if a person at a terminal chooses some; else none."""
+def _answered(question: QuestionError) -> list[str]:
+    """Print a question. Return the command line with the answer that a person at a terminal chooses; empty if none does."""
     first, *lines = question.lines(["strainwave", *sys.argv[1:]])
     _print("".join(f"{line}\n" for line in [f"strainwave: {first}", *lines]), sys.stderr)
     if not question.answers or not _is_terminal():
@@ -165,10 +165,11 @@ def _answer(question: QuestionError) -> list[str]:
             return []
         answer = question.answers[int(chosen) - 1]
         of_person = {f"{name}=" for name in answer.numbers}
-        return [
+        options = [
             word.replace(NUMBER, input(f"{NUMBER} in {word}: ").strip()) if word.startswith((*of_person,)) else word
             for word in answer.options
         ]
+        return added_to(sys.argv[1:], options, answer.files)
     except EOFError:
         return []
 
@@ -186,7 +187,8 @@ def _misuse(error: Any) -> str:
         gear = str(error.ctx.params.get("gear"))
         if Path(gear).suffix != ".toml" and Path(gear).exists():
             wrong = f"{unquoted(gear)} is a file, where the gear is asked for: name it first (strainwave list gears)"
-    verbs = getattr(error.ctx.command, "commands", {}) if error.ctx is not None and error.ctx.parent is not None else {}
+    room = error.ctx.command if error.ctx is not None and error.ctx.parent is not None else None
+    verbs = room.list_commands(error.ctx) if isinstance(room, Verbs) else []
     if wrong.startswith("No such command"):
         wrong += f": {command} is followed by {' or '.join(verbs)}" if verbs else ""
     return f"{wrong}; see {command} --help"

@@ -136,8 +136,7 @@ def classify(
         strainwave dataset classify faults
         strainwave dataset classify faults --seed 1
     """
-    from strainwave.dataset.classifier import benchmark
-    from strainwave.dataset.labelled import labelled_runs
+    from strainwave.dataset.classifier import benchmark, labelled_runs
     from strainwave.files.writing import write_folder
 
     runs, changes, detector = labelled_runs(folder)

@@ -250,7 +250,7 @@ def _check_apart(files: Sequence[MeasurementFile], healthy: Sequence[Measurement
 
 def _joints(files: MeasurementFiles, mapping: Callable[[Path], FileMapping]) -> tuple[str | None, ...]:
     """Return the joints that move in any recording; None for recordings of one joint without a name."""
-    from strainwave.identification.reading.recognise import joints_of
+    from strainwave.identification.reading.joints import joints_of
 
     found = [joint for file in files.files for joint in joints_of(file, replace(mapping(file.path), joint=None))]
     return tuple(dict.fromkeys(found)) or (None,)

@@ -61,12 +61,12 @@ class FileOptions:
         Raises:
             ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
         """
-        from strainwave.identification.reading.channels import ALIASES, CHANNELS
         from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
+        from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS
         from strainwave.identification.reading.source import measurement_file
 
         side: Any = self.side
-        channels = {*CHANNELS, *ALIASES}
+        channels = {*CHANNELS, *CHANNEL_ALIASES}
         if open_words := [word for word in (*(self.unit or ()), *(self.constant or ())) if NUMBER in word]:
             raise ValueError(f"{quoted(open_words[0])}: write the number in place of {NUMBER}")
         columns = pairs("--column", self.column, channels)

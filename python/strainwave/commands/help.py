@@ -1,7 +1,8 @@
-"""Help of the command: verbs under headings, each with its whole summary, and examples at the end."""
+"""Help of the command: verbs under headings, each with its whole summary, and examples at the end; rooms of verbs."""
 
 from __future__ import annotations
 
+from importlib import import_module
 from textwrap import dedent, indent
 from typing import Any
 
@@ -38,3 +39,19 @@ class Verbs(TyperGroup):
 def summary(command: Any) -> str:
     """Return the first paragraph of the help of a verb."""
     return " ".join((command.help or "").split("\n\n")[0].split())
+
+
+class Wing(Verbs):
+    """Verbs of a wing of the package: `app` of its module `command`, which is imported once one of its verbs is called."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        names: list[str] = self._verbs().list_commands(ctx)
+        return names
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        return self._verbs().get_command(ctx, cmd_name)
+
+    def _verbs(self) -> Any:
+        from typer.main import get_command
+
+        return get_command(import_module(f"strainwave.{self.name}.command").app)

@@ -89,7 +89,7 @@ def _ranking(gear: str, opened: MeasurementFiles, mapping: Callable[[Path], File
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.identify import read_measurements
     from strainwave.identification.kinds import KINDS
-    from strainwave.identification.rank import rank, table_of
+    from strainwave.identification.kinds.kind import rank, table_of
     from strainwave.identification.reading.recognise import Recognised
 
     with in_turn(None, len(opened.files)) as turn:

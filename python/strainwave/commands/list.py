@@ -32,10 +32,10 @@ def list_command(
 
 def _sets(kind: str, part: str) -> Iterator[str]:
     """Yield the name of each gear, and the title of each drive, that has a part in its name."""
-    from strainwave.files.gear_set import GearSet, catalogue
+    from strainwave.files.gear_set import GearSet, catalogue, spelled
     from strainwave.report.listing import aligned
 
-    names = _named(kind, catalogue(kind), part)
+    names = _named(kind, catalogue(kind), spelled(part))
     return iter(names) if kind == "gears" else aligned([(name, GearSet.read(name).name) for name in names], "<<")
 
 

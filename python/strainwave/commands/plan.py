@@ -62,7 +62,7 @@ def plan(
     from typing import Any
 
     from strainwave.arguments import number, one_of
-    from strainwave.files.figure import quantity_of
+    from strainwave.files.entries import quantity_of
     from strainwave.files.gear_set import GearSet
     from strainwave.identification.excitation.plan import plan_experiments as planned
 

@@ -8,12 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.messages import listed
+from strainwave.dataset.folder import DatasetFolder
+from strainwave.dataset.plan import HEALTHY_LABEL
+from strainwave.files.parquet_table import read_columns
+from strainwave.messages import listed, one_line
 from strainwave.presentation import Presented
 
 Array = NDArray[np.float64]
@@ -22,13 +27,23 @@ Labels = NDArray[np.str_]
 FOREST_TREES = 200  # of the forest
 MIN_RUNS_PER_LEAF = 2  # runs in a leaf
 INTERVAL_CONFIDENCE = 0.95
-QUANTILES = (0.5 - 0.5 * INTERVAL_CONFIDENCE, 0.5 + 0.5 * INTERVAL_CONFIDENCE)  # ends of an interval
+INTERVAL_ENDS = (0.5 - 0.5 * INTERVAL_CONFIDENCE, 0.5 + 0.5 * INTERVAL_CONFIDENCE)  # ends of an interval
 BOOTSTRAP_RESAMPLES = 400  # of units, for an interval
 CHANCE_SHUFFLES = 50  # of labels between units, for chance
 CHANCE_TREES = 25  # of the forest of a shuffle: 50 forests take less time so than ten of the others
 HELD_OUT_SHARE = 0.3  # of the units, and of the conditions
 MIN_UNITS = 8
-EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
+MISSING_EXTRA = "the classifier needs scikit-learn: pip install 'strainwave[learn]'"
+MAX_RUNS = 2_000_000  # in memory at once
+FALSE_ALARM = 0.01  # share of healthy training runs that the threshold of the detector lets alarm
+MIN_HEALTHY_RUNS = 100  # from which a threshold of that share is taken
+PHYSICAL_FEATURES = (
+    "current_order_",
+    "current_mean",
+    "current_rms",
+    "torque_mean",
+    "torque_rms",
+)  # beginnings of feature names
 
 
 @dataclass(frozen=True)
@@ -93,7 +108,7 @@ class LabelledRuns:
     label: Labels
     unit: NDArray[np.int64]
     condition: NDArray[np.int64]
-    healthy: str = "healthy"
+    healthy: str = HEALTHY_LABEL
 
     def __post_init__(self) -> None:
         runs = len(self.label)
@@ -140,7 +155,10 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
     held_unit = _held_out(runs.unit, chance)
     held_condition = _held_out(runs.condition, chance)
     held_run = chance.random(len(runs.label)) < HELD_OUT_SHARE
-    shuffled = [_shuffled(runs, chance) for _ in range(CHANCE_SHUFFLES)]
+    # each run has the label of the same run of another unit, drawn once for a unit
+    group, inverse = np.unique(runs.unit, return_inverse=True)
+    first = np.array([np.flatnonzero(inverse == place)[0] for place in range(len(group))])
+    shuffled = [np.asarray(chance.permutation(runs.label[first])[inverse]) for _ in range(CHANCE_SHUFFLES)]
     answers = _answers(runs, runs.label, ~held_unit, held_unit, seed)
     truth, units = runs.label[held_unit], runs.unit[held_unit]
     labels = tuple(np.unique(runs.label).tolist())
@@ -159,7 +177,7 @@ def benchmark(runs: LabelledRuns, detector: Detector | None = None, seed: int = 
         detector=None if alarms is None else _detects(truth, alarms, runs, units, seed),
         classifier_detects=None if alarms is None else _detects(truth, answers != runs.healthy, runs, units, seed),
         false_alarms=None if alarms is None or not sound.any() else float(alarms[sound].mean()),
-        confusion=_confusion(truth, answers, labels),
+        confusion=np.array([[np.sum((truth == row) & (answers == column)) for column in labels] for row in labels], np.int64),
         labels=labels,
     )
 
@@ -180,21 +198,13 @@ def _held_out(group: NDArray[np.int64], chance: np.random.Generator) -> NDArray[
     return np.isin(group, held)
 
 
-def _shuffled(runs: LabelledRuns, chance: np.random.Generator) -> Labels:
-    """Labels of other units: each run has the label of the same run of another unit, drawn once for a unit."""
-    units, inverse = np.unique(runs.unit, return_inverse=True)
-    first = np.array([np.flatnonzero(inverse == place)[0] for place in range(len(units))])
-    drawn = chance.permutation(runs.label[first])
-    return np.asarray(drawn[inverse])
-
-
 def _chance(runs: LabelledRuns, shuffled: list[Labels], held_unit: NDArray[np.bool_], seed: int) -> Score:
     """Score of forests that were trained on shuffled labels: the mean over the shuffles, and their quantiles as interval."""
     truth, units = runs.label[held_unit], runs.unit[held_unit]
     accuracies = [
         balanced_accuracy(truth, _answers(runs, label, ~held_unit, held_unit, seed, CHANCE_TREES)) for label in shuffled
     ]
-    low, high = np.quantile(accuracies, QUANTILES)
+    low, high = np.quantile(accuracies, INTERVAL_ENDS)
     return Score(float(np.mean(accuracies)), float(low), float(high), len(truth), len(np.unique(units)))
 
 
@@ -205,7 +215,7 @@ def _answers(
     try:
         from sklearn.ensemble import RandomForestClassifier
     except ImportError:
-        raise ImportError(EXTRA) from None
+        raise ImportError(MISSING_EXTRA) from None
     forest = RandomForestClassifier(
         trees or FOREST_TREES, min_samples_leaf=MIN_RUNS_PER_LEAF, class_weight="balanced", random_state=seed, n_jobs=-1
     )
@@ -226,10 +236,89 @@ def _score(truth: Labels, answers: Labels, units: NDArray[np.int64], seed: int) 
     for _ in range(BOOTSTRAP_RESAMPLES):
         rows = np.concatenate([members[place] for place in chance.integers(len(members), size=len(members))])
         drawn.append(balanced_accuracy(truth[rows], answers[rows]))
-    low, high = np.quantile(drawn, QUANTILES)
+    low, high = np.quantile(drawn, INTERVAL_ENDS)
     return Score(balanced_accuracy(truth, answers), float(low), float(high), len(truth), len(members))
 
 
-def _confusion(truth: Labels, answers: Labels, labels: tuple[str, ...]) -> NDArray[np.int64]:
-    counts = [[int(np.sum((truth == row) & (answers == column))) for column in labels] for row in labels]
-    return np.array(counts, dtype=np.int64)
+@dataclass(frozen=True)
+class DetectorRuns:
+    """Differences of physical features from those of the same unit and condition at its first stage.
+
+    Args:
+        difference: shape (runs, features); not-a-number where a run does not determine a feature
+        healthy: True for runs without a fault, shape (runs,)
+    """
+
+    difference: Array
+    healthy: NDArray[np.bool_]
+
+    def alarms(self, train: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return the runs whose differences exceed those that healthy training runs have by chance.
+
+        The statistic is the sum of squared differences over their standard deviation in healthy training runs; its threshold is
+        exceeded by the share `FALSE_ALARM` of these.
+        """
+        used = self.healthy & train
+        if used.sum() < MIN_HEALTHY_RUNS:
+            raise ValueError(
+                f"{used.sum()} healthy training runs do not determine a threshold; the plan needs {MIN_HEALTHY_RUNS} or more"
+            )
+        sigma = np.sqrt(_mean_square(self.difference[used], axis=0))
+        kept = sigma > 0.0
+        statistic = _mean_square(self.difference[:, kept] / sigma[kept], axis=1)
+        return np.asarray(statistic > np.quantile(statistic[used], 1.0 - FALSE_ALARM))
+
+
+def _mean_square(values: Array, axis: int) -> Array:
+    """Return the mean of the squares of numbers, those that are not-a-number left out; 0 if there are none."""
+    there = ~np.isnan(values)
+    return np.asarray(np.sum(np.where(there, values, 0.0) ** 2, axis=axis) / np.maximum(there.sum(axis=axis), 1))
+
+
+def labelled_runs(folder: str | Path) -> tuple[LabelledRuns, LabelledRuns, DetectorRuns]:
+    """Return the runs of a data set with their features, with differences from the first stage, and for the detector.
+
+    First stages and failed runs are left out.
+
+    A run counts as faulty if its unit has a fault and the severity at its stage is above 0.
+    """
+    target = DatasetFolder(Path(folder))
+    plan = target.plan
+    if plan.life.stages < 2:
+        raise ValueError(
+            one_line(f"{folder} has one stage; the detector compares with the first: give life.stages = 2 or more")
+        )
+    if plan.members > MAX_RUNS:
+        raise ValueError(f"{folder} has {plan.members} runs; at most {MAX_RUNS} are read at once")
+    if target.done() < plan.shards:
+        raise ValueError(
+            one_line(f"{folder} has {target.done()} of {plan.shards} shards; call strainwave dataset make again first")
+        )
+    names, columns = _columns([target.shard(number) for number in range(plan.shards)])
+    sound = np.isfinite(columns["current_mean"]) if "current_mean" in columns else np.isfinite(columns[names[0]])
+    severity = np.max([columns[name] for name in columns if name.startswith("severity.")], axis=0)
+    stage = columns["stage"].astype(int)
+    group = columns["condition"] * plan.units.number + columns["unit"]
+    first = {key: row for row, key in zip(np.flatnonzero(stage == 0).tolist(), group[stage == 0].tolist(), strict=True)}
+    kept = np.flatnonzero(sound & (stage > 0))
+    reference = np.array([first[key] for key in group[kept].tolist()])
+    label = np.where(severity[kept] > 0.0, columns["fault"][kept], HEALTHY_LABEL).astype(np.str_)
+    features = {name: columns[name][kept].astype(np.float64) for name in names}
+    features = {name: values for name, values in features.items() if not np.isnan(values).all()}
+    changes = {name: values - columns[name][reference] for name, values in features.items()}
+    groups = columns["unit"][kept].astype(np.int64), columns["condition"][kept].astype(np.int64)
+    physical = np.column_stack([values for name, values in changes.items() if name.startswith(PHYSICAL_FEATURES)])
+    return (
+        LabelledRuns(features, label, *groups),
+        LabelledRuns(changes, label, *groups),
+        DetectorRuns(physical, label == HEALTHY_LABEL),
+    )
+
+
+def _columns(paths: list[Path]) -> tuple[list[str], dict[str, NDArray[Any]]]:
+    """Names of the features, and the columns of all shards that are used."""
+    tables = [read_columns(path) for path in paths]
+    roles = {field.name: (field.metadata or {}).get(b"role", b"").decode() for field in tables[0].schema}
+    names = [name for name, role in roles.items() if role == "feature"]
+    wanted = [*names, "unit", "condition", "stage", "fault", *(name for name in roles if name.startswith("severity."))]
+    return names, {name: np.concatenate([table[name].to_numpy() for table in tables]) for name in wanted}

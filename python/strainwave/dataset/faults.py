@@ -20,12 +20,14 @@ MAX_DRIVES_KEPT = 16  # whose places of numbers are kept
 SAME_ORDER = 1e-9  # relative difference of two orders that are one
 ERROR_PLACE = "gear.kinematic_error"
 WITHOUT_EFFECT = ("constant", "ideal")  # laws that another may replace
-REMEDIES = {
+LAW_REMEDIES = {
     "fourier": "its harmonics(), in place of the law that is there, are one",
     "encoder": "sensor.Encoder(counts=...) is one",
     "gain": "sensor.Gain() and sensor.Encoder(counts=...) have an offset",
 }  # where the drive gets a law from that cannot be put in
-NEUTRAL: Mapping[str, Mapping[str, float]] = {"backlash": {"clearance": 0.0}}  # required numbers of a law without effect
+NEUTRAL_NUMBERS: Mapping[str, Mapping[str, float]] = {
+    "backlash": {"clearance": 0.0}
+}  # required numbers of a law without effect
 
 Fault = Any  # a model of `sw.fault`
 
@@ -55,23 +57,14 @@ class ModelChange(NamedTuple):
 
 
 def changes_of(drive: Drive, fault: Fault) -> list[ModelChange]:
-    """Return the changes that a fault lists for a drive.
-
-    Raises:
-        TypeError: this is no fault
-        ValueError: the drive lacks what the fault needs, such as the teeth of its gear
-    """
-    _check(fault)
+    """Return the changes that a fault lists for a drive."""
     return _listed(fault, _facts(drive))
 
 
-def _check(fault: Fault) -> None:
+def _listed(fault: Fault, facts: Any) -> list[ModelChange]:
     if type(fault) not in _core.fault_families["fault"].values():
         raise TypeError(f"a fault must be a model of strainwave.fault, not {type(fault).__name__}")
-
-
-def _listed(fault: Fault, facts: Any) -> list[ModelChange]:
-    return [ModelChange(*each) for each in fault.changes(facts)]
+    return [ModelChange(*change) for change in fault.changes(facts)]
 
 
 def prepared(drive: Drive, faults: Sequence[Fault]) -> Drive:
@@ -112,12 +105,7 @@ def changes(drive: Drive, faults: Sequence[Fault]) -> dict[str, float]:
     """Return the numbers of a prepared drive with the faults, by their paths. The paths are the same at every severity.
 
     Args:
-        drive: a drive from `prepared`
         faults: in the order in which they act; each acts on the numbers that those before it leave
-
-    Raises:
-        TypeError: something is no fault
-        ValueError: the drive is not prepared for a fault
 
     >>> import strainwave as sw
     >>> numbers = changes(sw.load("position-drive"), [sw.fault.LubricationLoss(severity=0.5)])
@@ -126,7 +114,6 @@ def changes(drive: Drive, faults: Sequence[Fault]) -> dict[str, float]:
     """
     numbers = _Numbers(_places(drive))
     for fault in faults:
-        _check(fault)
         for change in _listed(fault, numbers.places.facts):
             numbers.make(fault, change)
     return numbers.changed
@@ -166,11 +153,11 @@ def _facts(drive: Drive) -> Any:
     """Return what faults need to know of a drive."""
     kinematics = drive.gear.kinematics
     shaped = any(model.name == "misalignment" for _, model in _models(ERROR_PLACE, drive.gear.kinematic_error))
-    known: dict[str, Any] = {"ratio": kinematics.ratio, "error": "geometry" if shaped else "waves"}
+    facts: dict[str, Any] = {"ratio": kinematics.ratio, "error": "geometry" if shaped else "waves"}
     for name in ("flexspline_teeth", "circular_spline_teeth", "fixed"):
         if hasattr(kinematics, name):
-            known[name] = getattr(kinematics, name)
-    return _core.fault.Facts(**known)
+            facts[name] = getattr(kinematics, name)
+    return _core.fault.Facts(**facts)
 
 
 def _models(path: str, model: Any) -> Iterator[tuple[str, Any]]:
@@ -210,7 +197,7 @@ def _with_law(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
         raise ValueError(
             f"{fault.name} needs a law {change.law} at {change.place}, where {present.name} is, which it can neither hold nor "
             "replace without a change of the healthy drive; give the drive such a law"
-            + (f" ({REMEDIES[change.law]})" if change.law in REMEDIES else "")
+            + (f" ({LAW_REMEDIES[change.law]})" if change.law in LAW_REMEDIES else "")
             + ", or leave the fault out"
         )
     return drive.replace({change.place: whole})
@@ -224,19 +211,15 @@ def _options(owner: Any, name: str) -> Mapping[str, Any]:
 def _put_in(options: Mapping[str, Any], present: Any, law: str) -> Any:
     """Return the present law with another in its place, around it or within it, without effect; None if it does not fit."""
     kind = options.get(law)
-    numbers = NEUTRAL.get(law, {})
+    numbers = NEUTRAL_NUMBERS.get(law, {})
     if kind and type(present) in _options(kind, "law").values():
         return kind(law=present, **numbers)
-    if kind and present.name in WITHOUT_EFFECT and not _required(kind):
+    if kind and present.name in WITHOUT_EFFECT and not any(field["required"] for field in kind.fields):
         return kind()
     if not hasattr(present, "law"):
         return None
     inner = _put_in(_options(present, "law"), present.law, law)
     return inner if inner is None else present.replace(law=inner)
-
-
-def _required(kind: Any) -> bool:
-    return any(field["required"] for field in kind.fields)
 
 
 def _with_wave(drive: Drive, fault: Fault, change: ModelChange) -> Drive:
@@ -272,12 +255,8 @@ def _has_effect(drive: Drive, change: ModelChange) -> bool:
     if path is None:
         return False
     if change.kind == "wave" and hasattr(law := _at(drive, path), "law") and "friction" in change.place:
-        return any(getattr(law.law, name) for name in _number_names(law.law))
+        return any(getattr(law.law, field["name"]) for field in law.law.fields if field["kind"] == "number")
     return True
-
-
-def _number_names(model: Any) -> Iterator[str]:
-    return (field["name"] for field in model.fields if field["kind"] == "number")
 
 
 def _paths_of(drive: Drive, change: ModelChange) -> Iterator[str]:
@@ -309,17 +288,13 @@ class _Places:
         return self._scaled[key]
 
     def held(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
-        """Return the paths of the number that a change adds to, and of its direction.
-
-        Raises:
-            ValueError: the drive is not prepared for the fault
-        """
+        """Return the paths of the number that a change adds to, and of its direction."""
         key = change.place, change.quantity, change.law, change.order
         if key not in self._held:
-            self._held[key] = self._found(fault, change)
+            self._held[key] = self._paths_in(fault, change)
         return self._held[key]
 
-    def _found(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
+    def _paths_in(self, fault: Fault, change: ModelChange) -> tuple[str, str]:
         path = _holder(self.drive, change)
         if path is None:
             raise ValueError(

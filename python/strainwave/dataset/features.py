@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MOMENTS = ("mean", "rms", "peak", "kurtosis")
-DIRECTIONS = {"forward": 1.0, "backward": -1.0}
+MOMENT_NAMES = ("mean", "rms", "peak", "kurtosis")
+DIRECTION_SIGNS = {"forward": 1.0, "backward": -1.0}
 MIN_SPEED_SHARE = 0.02  # of the highest speed of a run: slower samples belong to no direction
 MIN_TURNS = 1.5  # of the input in one direction, below which orders from 1 on are not separated from the mean
 MIN_SAMPLES_PER_COLUMN = 3  # of the regression
 MAX_CONDITION = 1e10  # of the normal equations, beyond which amplitudes have fewer than six digits
-SIGNALS = ("current", "torque", "input_speed", "tracking_error")  # in the order in which they draw noise
+NOISY_SIGNALS = ("current", "torque", "input_speed", "tracking_error")  # in the order in which they draw noise
 TREND_COLUMNS = 3  # of the regression: mean, slope and curvature over time
 MEMBERS_AT_ONCE = 64  # whose matrices fit into a processor's cache
 
@@ -49,10 +49,10 @@ class FeatureSet:
         found = {
             f"{signal}_{moment}": "1" if moment == "kurtosis" else unit
             for signal, unit in self.signals.items()
-            for moment in MOMENTS
+            for moment in MOMENT_NAMES
         }
         if "current" in self.signals:
-            found |= dict.fromkeys((_name(order, way) for order in self._all_orders for way in DIRECTIONS), "A")
+            found |= dict.fromkeys((_name(order, way) for order in self._all_orders for way in DIRECTION_SIGNS), "A")
         return found
 
     @property
@@ -74,11 +74,9 @@ class FeatureSet:
             columns |= {f"{signal}_{name}": values for name, values in moments(series[signal]).items()}
         if "current" not in self.signals or not self.orders:
             return columns
-        for way, sign in DIRECTIONS.items():
-            lines = [
-                self._lines(series["current"][part], input_angle[part], sign * input_speed[part])
-                for part in _parts(len(input_angle))
-            ]
+        parts = [slice(first, first + MEMBERS_AT_ONCE) for first in range(0, len(input_angle), MEMBERS_AT_ONCE)]
+        for way, sign in DIRECTION_SIGNS.items():
+            lines = [self._lines(series["current"][part], input_angle[part], sign * input_speed[part]) for part in parts]
             amplitudes = np.concatenate(lines)
             columns |= {_name(order, way): amplitudes[:, place] for place, order in enumerate(self._all_orders)}
         return columns
@@ -86,7 +84,9 @@ class FeatureSet:
     def _lines(self, current: Array, angle: Array, speed: Array) -> Array:
         """Amplitudes of all orders in one direction, shape (members, orders)."""
         moving = speed > MIN_SPEED_SHARE * np.abs(speed).max(axis=1, keepdims=True)
-        turns = _turns(angle, moving)
+        high = np.where(moving, angle, -np.inf).max(axis=1)
+        low = np.where(moving, angle, np.inf).min(axis=1)
+        turns = np.where(moving.any(axis=1), high - low, 0.0) / (2.0 * np.pi)  # between the extremes of the angle while moving
         columns = TREND_COLUMNS + 2 * len(self._all_orders)
         enough = (turns >= MIN_TURNS) & (moving.sum(axis=1) >= MIN_SAMPLES_PER_COLUMN * columns)
         amplitudes = np.full((len(current), len(self._all_orders)), np.nan)
@@ -130,8 +130,6 @@ def order_amplitudes(current: Array, angle: Array, used: NDArray[np.bool_], orde
 
     Args:
         current, angle: shape (members, samples)
-        used: samples to use
-        orders: cycles per turn of the angle
 
     Returns:
         amplitudes, shape (members, orders); not-a-number where the samples do not determine them
@@ -178,31 +176,16 @@ def _basis(angle: Array, orders: Sequence[float]) -> Array:
     return basis
 
 
-def _turns(angle: Array, moving: NDArray[np.bool_]) -> Array:
-    """Turns between the extremes of the angle while moving."""
-    high = np.where(moving, angle, -np.inf).max(axis=1)
-    low = np.where(moving, angle, np.inf).min(axis=1)
-    return np.where(moving.any(axis=1), high - low, 0.0) / (2.0 * np.pi)
-
-
-def _parts(members: int) -> list[slice]:
-    return [slice(first, first + MEMBERS_AT_ONCE) for first in range(0, members, MEMBERS_AT_ONCE)]
-
-
 def _name(order: float, way: str) -> str:
     return f"current_order_{order:g}_{way}"
 
 
 def add_noise(series: dict[str, Array], noise: Mapping[Any, float], seed: int, members: NDArray[np.int64]) -> None:
-    """Add white noise to signals in place, a function of seed and member alone.
+    """Add white noise to signals of shape (members, samples) in place, a function of seed and member alone.
 
-    Args:
-        series: signals, each of shape (members, samples)
-        noise: standard deviation of each sample, by the name of the signal
-        seed: of the plan
-        members: index of each
+    It has the standard deviation of each sample, by the name of the signal.
     """
-    noisy = [name for name in SIGNALS if noise.get(name, 0.0) > 0.0 and name in series]
+    noisy = [name for name in NOISY_SIGNALS if noise.get(name, 0.0) > 0.0 and name in series]
     for row, member in enumerate(members.tolist() if noisy else []):
         generator = np.random.Generator(np.random.Philox(key=seed, counter=[0, 0, 0, member]))
         for name in noisy:

@@ -50,11 +50,7 @@ class DatasetFolder(Presented):
         return (self.path / SUMS).exists()
 
     def begin(self, plan: DatasetPlan, text: bytes, manifest: str, card: str) -> None:
-        """Write what describes the data set, or check that the folder has the same plan.
-
-        Raises:
-            FileExistsError: the folder has another plan, or other files
-        """
+        """Write what describes the data set, or check that the folder has the same plan."""
         with making(self.path):
             if (self.path / PLAN).exists():
                 if self.plan.digest != plan.digest:

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
-from strainwave.dataset.plan import DatasetPlan, Range, check_unit_grid
-from strainwave.dataset.profiles import command_of, peak_speed
-from strainwave.dataset.sampling import Indices, hashed, points
-from strainwave.dataset.splits import share_of
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan, Range, check_grid, range_of
+from strainwave.dataset.profiles import PROFILES, command_of, peak_speed
+from strainwave.dataset.sampling import Indices, hashed, points, share_of
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown
@@ -27,7 +26,6 @@ from strainwave.spline_orders import turning_spline_order
 
 Array = NDArray[np.float64]
 
-HEALTHY = "healthy"
 MAX_SIGNAL_FREQUENCY_SHARE = 0.4  # of the sample rate: the highest order at the highest speed
 SPEED_OVERSHOOT = 1.2  # of the actual over the commanded speed
 UNIT_DESIGN, CONDITION_DESIGN, PROFILE_SEED, NOISE_SEED = 0x11, 0x12, 0x13, 0x14  # columns of the hash of the plan's seed
@@ -86,21 +84,23 @@ class Population:
                     "of the output, so take a drive with a position controller"
                 )
             )
-        check_unit_grid(self.plan.units.design, self.plan.units.number, list(self.unit_ranges.values()))
+        check_grid("units", self.plan.units.design, self.plan.units.number, list(self.unit_ranges.values()))
 
     def check(self) -> None:
-        """Refuse steps that are too coarse and samples that alias, in any condition.
-
-        Raises:
-            ValueError, FloatingPointError: the message names the condition and what to do
-        """
+        """Refuse steps that are too coarse and samples that alias, in any condition."""
         table = self.plan.simulation
         for number in range(self.plan.condition_count):
             condition = self.condition(number)
             check_resolution(self.drive, table.dt, 0.0, condition.temperature)
             self._check_aliasing(condition)
-        self._check_samples()
-        self._check_faults()
+        available = {*outputs(self.drive), "tracking_error"}
+        kept = self.plan.samples.columns if self.plan.samples else ()
+        if wrong := [name for name in kept if name not in available]:
+            raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(available)}")
+        assert self.paths  # of one fault of each table, which refuses names and numbers that it does not have
+        for fault in self.plan.faults:
+            if fault.onset is not None:
+                _onset_shares(fault.onset, np.zeros(1))
 
     # The drive
 
@@ -112,8 +112,10 @@ class Population:
     def drive(self) -> Drive:
         """The drive of every member, but for numbers; faults are numbers of its parts."""
         drive = self.gear_set.drive
-        if not self.plan.simulation.noise_in_loop:
-            drive = drive.replace(sensors=_without_noise(drive.sensors))
+        if not self.plan.simulation.noise_in_loop:  # it is added to the features instead
+            laws = {field["name"]: getattr(drive.sensors, field["name"]) for field in type(drive.sensors).fields}
+            noisy = {name: law for name, law in laws.items() if hasattr(law, "seed") and hasattr(law, "law")}
+            drive = drive.replace(sensors=drive.sensors.replace(**{name: law.law for name, law in noisy.items()}))
         if not self.plan.faults:
             return drive
         from strainwave.dataset.faults import prepared
@@ -138,15 +140,15 @@ class Population:
     @cached_property
     def recorded(self) -> list[str]:
         """Outputs that features and samples need."""
-        known = outputs(self.drive)
-        wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in known)]
+        available = outputs(self.drive)
+        wanted = ["input_angle", "input_speed", "output_angle", *(each for each in FEATURE_SIGNALS if each in available)]
         kept = self.plan.samples.columns if self.plan.samples else ()
         return list(dict.fromkeys(name for name in (*wanted, *kept) if name != "tracking_error"))
 
     @cached_property
     def features(self) -> FeatureSet:
-        known = {*outputs(self.drive), "tracking_error"}
-        signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in known}
+        available = {*outputs(self.drive), "tracking_error"}
+        signals = {name: unit for name, unit in FEATURE_SIGNALS.items() if name in available}
         tooth = turning_spline_order(self.drive.gear.kinematics) if self.plan.features.tooth_orders else None
         return FeatureSet(signals, self.plan.features.orders, None if tooth is None else round(tooth, 6))
 
@@ -162,14 +164,15 @@ class Population:
         ranges = {path: spread.around(self.nominal[path]) for path, spread in stated.items()}
         if self.plan.units.catalogue_spread:
             entries = self.gear_set.sources.items()
-            known = {path: entry.spread for path, entry in entries if entry.spread and path in self.nominal}
-            if not known:
+            stated_by_set = {path: entry.spread for path, entry in entries if entry.spread and path in self.nominal}
+            if not stated_by_set:
                 raise ValueError(
                     f"units.catalogue_spread: the gear set {quoted(self.plan.drive)} states no spread of a number; "
                     "give units.spread instead"
                 )
             ends = {
-                path: sorted(self.nominal[path] * (1.0 + sign * share) for sign in (-1, 1)) for path, share in known.items()
+                path: sorted(self.nominal[path] * (1.0 + sign * share) for sign in (-1, 1))
+                for path, share in stated_by_set.items()
             }
             ranges = {path: Range(low=low, high=high) for path, (low, high) in ends.items()} | ranges
         limits = every(self.drive)
@@ -186,8 +189,8 @@ class Population:
         """All that can vary between units: numbers of the drive, and severity and numbers of each fault."""
         ranges = {("spread", path): both for path, both in self.spread.items()}
         for table in self.plan.faults:
-            ranges["severity", table.label] = _range(table.severity)
-            ranges |= {(table.label, name): _range(number) for name, number in sorted(table.numbers.items())}
+            ranges["severity", table.label] = range_of(table.severity)
+            ranges |= {(table.label, name): range_of(number) for name, number in sorted(table.numbers.items())}
         return ranges
 
     def unit_values(self, first: int, last: int) -> dict[tuple[str, str], Array]:
@@ -198,7 +201,7 @@ class Population:
     def unit_faults(self, units: Indices) -> NDArray[np.str_]:
         """Label of the fault of each unit; the shares are met to within one unit."""
         shares = {table.label: table.share for table in self.plan.faults}
-        return share_of(self.plan.seed, "fault", units, self.plan.units.number, shares, HEALTHY)
+        return share_of(self.plan.seed, "fault", units, self.plan.units.number, shares, HEALTHY_LABEL)
 
     def unit_split(self, units: Indices) -> NDArray[np.str_]:
         return share_of(self.plan.seed, "unit", units, self.plan.units.number, self.plan.splits.shares, "test")
@@ -227,12 +230,7 @@ class Population:
     @cached_property
     def condition_units(self) -> dict[str, str]:
         """Unit of each number of a condition, by its name."""
-        from strainwave.dataset.profiles import PROFILES
-
-        found: dict[str, str] = {}
-        for table in self.plan.conditions:
-            found |= PROFILES[table.profile].units
-        return found
+        return {name: unit for table in self.plan.conditions for name, unit in PROFILES[table.profile].units.items()}
 
     # Members
 
@@ -307,17 +305,15 @@ class Population:
     def _fault_models(self, table: int, numbers: Mapping[str, float], severity: float) -> list[Any]:
         """The faults of a table of the plan, with the middle of each range where no number is given."""
         stated = self.plan.faults[table]
-        middle = {name: 0.5 * (_range(number).low + _range(number).high) for name, number in stated.numbers.items()}
+        ranges = {name: range_of(number) for name, number in stated.numbers.items()}
+        middle = {name: 0.5 * (both.low + both.high) for name, both in ranges.items()}
         first = _model(fault_kind(stated.kind), {**middle, **numbers, **stated.words, "severity": severity})
         return [first, *(fault_kind(kind)(severity=severity) for kind in stated.also)]
 
     @cached_property
     def _fault_paths(self) -> set[str]:
-        found: set[str] = set()
-        for table in range(len(self.plan.faults)):
-            for severity in (0.5, 1.0):
-                found |= {*self._changes(table, {}, {}, severity)}
-        return found
+        tables = range(len(self.plan.faults))
+        return {path for table in tables for severity in (0.5, 1.0) for path in self._changes(table, {}, {}, severity)}
 
     # Checks
 
@@ -333,27 +329,9 @@ class Population:
                 f"{table.sample:g} s apart alias; take simulation.sample = {0.99 * needed:.3g} s or less, or lower orders"
             )
 
-    def _check_faults(self) -> None:
-        """Make one fault and one onset of each table, which refuses names and numbers that they do not have."""
-        assert self.paths
-        for table in self.plan.faults:
-            if table.onset is not None:
-                _onset_shares(table.onset, np.zeros(1))
-
-    def _check_samples(self) -> None:
-        if self.plan.samples is None:
-            return
-        known = {*outputs(self.drive), "tracking_error"}
-        if wrong := [name for name in self.plan.samples.columns if name not in known]:
-            raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(known)}")
-
 
 def fault_kind(name: str) -> Any:
-    """Return the class of a fault by its name, as lubrication_loss.
-
-    Raises:
-        ValueError: there is none of this name
-    """
+    """Return the class of a fault by its name, as lubrication_loss."""
     from strainwave import _core
 
     kinds: Mapping[str, Any] = _core.fault_families["fault"]
@@ -368,17 +346,11 @@ def _onset_shares(table: Any, usage: Array) -> Array:
     kinds: Mapping[str, Any] = _core.fault_families["onset"]
     if table.law not in kinds:
         raise ValueError(f"onset.law = {quoted(table.law)} is not known; there are {listed(kinds)}")
-    law = _model(kinds[table.law], table.numbers | table.words)
-    shares: Array = np.asarray(law.share(usage))
-    return shares
+    return np.asarray(_model(kinds[table.law], table.numbers | table.words).share(usage))
 
 
 def _model(kind: Any, values: Mapping[str, Any]) -> Any:
-    """A model with numbers, of which some are counted.
-
-    Raises:
-        ValueError: it has none of a name, or does not take a value
-    """
+    """A model with numbers, of which some are counted; refuse a name or a value that it does not take."""
     kinds = {each["name"]: each["kind"] for each in kind.fields}
     if wrong := [name for name in values if name not in kinds]:
         raise ValueError(f"{kind.name} has no {quoted(wrong[0])}; there are {listed(kinds)}")
@@ -386,10 +358,6 @@ def _model(kind: Any, values: Mapping[str, Any]) -> Any:
         return kind(**{name: round(each) if kinds[name] == "count" else each for name, each in values.items()})
     except TypeError as error:
         raise ValueError(one_line(str(error))) from None
-
-
-def _range(number: float | Range) -> Range:
-    return number if isinstance(number, Range) else Range(low=number, high=number)
 
 
 def _drawn(design: str, seed: int, count: int, ranges: Mapping[Any, Range], first: int, last: int) -> dict[Any, Array]:
@@ -401,9 +369,3 @@ def _drawn(design: str, seed: int, count: int, ranges: Mapping[Any, Range], firs
         name: both.low + (both.high - both.low) * cube[:, place[name]] if both.varies else np.full(last - first, both.low)
         for name, both in ranges.items()
     }
-
-
-def _without_noise(sensors: Any) -> Any:
-    """Sensors with their laws alone: their noise is added to the features instead."""
-    laws = {each["name"]: getattr(sensors, each["name"]) for each in type(sensors).fields}
-    return sensors.replace(**{name: law.law for name, law in laws.items() if hasattr(law, "seed") and hasattr(law, "law")})

@@ -12,9 +12,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from strainwave.dataset.profiles import LIMITS, PROFILES
+from strainwave.dataset.profiles import PROFILE_LIMITS, PROFILES
 from strainwave.dataset.sampling import grid_levels
 from strainwave.files.gear_file import at, document
 from strainwave.messages import listed, one_line, quoted, shortened
@@ -23,6 +23,7 @@ MAX_CONDITIONS = 100_000  # each has a command of its own, which is checked befo
 MAX_MEMBERS = 10**12
 MAX_SHARD_MEMBERS = 65_536  # in memory at once as a table, not as series
 MAX_SAMPLES = 100_000  # of one member, in memory at once with those of its block
+HEALTHY_LABEL = "healthy"  # of units without a fault
 SHARE_TOLERANCE = 1e-9  # rounding of a sum of shares
 MIN_TEMPERATURE, MAX_TEMPERATURE = 150.0, 500.0  # K
 
@@ -31,6 +32,7 @@ Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Line = Annotated[str, Field(max_length=2000)]
 Design = Literal["grid", "latin", "random", "sobol"]
+Listed = BeforeValidator(lambda value: tuple(value) if isinstance(value, list) else value)  # a list of TOML as a tuple
 
 
 class PlanTable(BaseModel):
@@ -90,11 +92,8 @@ def range_of(number: float | Range) -> Range:
 def _within(name: str, number: float | Range, low: float, high: float, unit: str) -> None:
     both = range_of(number)
     if not (low <= both.low and both.high <= high):
-        raise ValueError(f"{name} = {_shown(both)} must lie in [{low:g}, {high:g}]{f' {unit}' if unit else ''}")
-
-
-def _shown(both: Range) -> str:
-    return f"[{both.low:g}, {both.high:g}]" if both.varies else f"{both.low:g}"
+        shown = f"[{both.low:g}, {both.high:g}]" if both.varies else f"{both.low:g}"
+        raise ValueError(f"{name} = {shown} must lie in [{low:g}, {high:g}]{f' {unit}' if unit else ''}")
 
 
 class SimulationTable(PlanTable):
@@ -150,12 +149,7 @@ class FaultTable(PlanTable):
     onset: OnsetTable | None = None
     numbers: dict[str, Number] = {}
     words: dict[str, str] = {}
-    also: tuple[str, ...] = ()
-
-    @field_validator("also", mode="before")
-    @classmethod
-    def _tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
+    also: Annotated[tuple[str, ...], Listed] = ()
 
     @field_validator("severity")
     @classmethod
@@ -192,7 +186,7 @@ class ConditionTable(PlanTable):
             raise ValueError(
                 f"the profile {self.profile} needs the numbers {needed}; there are {listed(self.numbers) or 'none'}"
             )
-        for name, (low, high) in LIMITS.items():
+        for name, (low, high) in PROFILE_LIMITS.items():
             if name in self.numbers:
                 _within(name, self.numbers[name], low, high, units[name])
         _within("temperature", self.temperature, MIN_TEMPERATURE, MAX_TEMPERATURE, "K")
@@ -229,13 +223,8 @@ class FeaturesTable(PlanTable):
 class SamplesTable(PlanTable):
     """Series to keep in addition to the features."""
 
-    columns: tuple[str, ...]
+    columns: Annotated[tuple[str, ...], Listed]
     every: Annotated[int, Field(ge=1)] = 1
-
-    @field_validator("columns", mode="before")
-    @classmethod
-    def _tuple(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
 
 
 class SplitsTable(PlanTable):
@@ -269,16 +258,11 @@ class DatasetPlan(PlanTable):
     simulation: SimulationTable = SimulationTable()
     units: UnitsTable
     life: LifeTable = LifeTable()
-    faults: tuple[FaultTable, ...] = ()
-    conditions: Annotated[tuple[ConditionTable, ...], Field(min_length=1)]
+    faults: Annotated[tuple[FaultTable, ...], Listed] = ()
+    conditions: Annotated[tuple[ConditionTable, ...], Field(min_length=1), Listed]
     features: FeaturesTable = FeaturesTable()
     samples: SamplesTable | None = None
     splits: SplitsTable = SplitsTable()
-
-    @field_validator("faults", "conditions", mode="before")
-    @classmethod
-    def _tuples(cls, value: Any) -> Any:
-        return tuple(value) if isinstance(value, list) else value
 
     @model_validator(mode="after")
     def _sums(self) -> DatasetPlan:
@@ -290,7 +274,7 @@ class DatasetPlan(PlanTable):
         if total > 1.0 + SHARE_TOLERANCE:
             raise ValueError(f"the shares of the faults sum to {total:g}; they must sum to at most 1, the rest is healthy")
         labels = [fault.label for fault in self.faults]
-        if len({*labels}) < len(labels) or "healthy" in labels:
+        if len({*labels}) < len(labels) or HEALTHY_LABEL in labels:
             raise ValueError(f"the faults {listed(labels)} must have different kinds, none of them healthy")
         if self.features.start > 0.5 * self.simulation.duration:
             raise ValueError(
@@ -298,7 +282,7 @@ class DatasetPlan(PlanTable):
                 f"{self.simulation.duration:g} s"
             )
         for table in self.conditions:
-            _check_grid(f"conditions of the profile {table.profile}", table.design, table.number, list(table.ranges.values()))
+            check_grid(f"conditions of the profile {table.profile}", table.design, table.number, list(table.ranges.values()))
         return self
 
     @property
@@ -343,24 +327,16 @@ class DatasetPlan(PlanTable):
 
     @staticmethod
     def of(content: dict[str, Any]) -> DatasetPlan:
-        """Return the plan of tables.
-
-        Raises:
-            ValueError: the first thing that is wrong, in one line
-        """
+        """Return the plan of tables."""
         try:
             return DatasetPlan.model_validate(_without_whole_numbers(content))
         except ValidationError as error:
             raise ValueError(_in_words(error, content)) from None
 
 
-def check_unit_grid(design: Design, number: int, ranges: list[Range]) -> None:
-    """Refuse a grid of units that is not full."""
-    _check_grid("units", design, number, ranges)
-
-
-def _check_grid(what: str, design: str, number: int, ranges: list[Range]) -> None:
-    columns = sum(each.varies for each in ranges)
+def check_grid(what: str, design: str, number: int, ranges: list[Range]) -> None:
+    """Refuse a grid that is not full."""
+    columns = sum(both.varies for both in ranges)
     if design != "grid" or columns == 0:
         return
     levels = grid_levels(number, columns)

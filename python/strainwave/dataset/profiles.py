@@ -88,7 +88,7 @@ PROFILES: dict[str, ProfileKind] = {
         _random,
     ),
 }
-LIMITS: dict[str, tuple[float, float]] = {"rise": (1e-3, np.inf), "period": (1e-2, np.inf), "dwell": (0.0, 0.9)}
+PROFILE_LIMITS: dict[str, tuple[float, float]] = {"rise": (1e-3, np.inf), "period": (1e-2, np.inf), "dwell": (0.0, 0.9)}
 
 
 def command_of(kind: str, numbers: Mapping[str, float], duration: float, seed: int) -> Scenario:

@@ -38,17 +38,15 @@ Show = Callable[[str], None]
 
 
 def work(path: str | Path, part: int = 0, parts: int = 1, parent: int | None = None) -> int:
-    """Make the shards of a folder that nobody else makes, those of one's own part first; return how many.
+    """Make the shards of a folder that nobody else makes, those of one's own part, from 0, first; return how many.
 
-    Args:
-        path: folder of a data set
-        part, parts: which of how many workers this is, from 0
-        parent: process without which this one ends after its shard; on Windows the worker goes on
+    Without its parent process this one ends after its shard; on Windows it goes on.
     """
     folder = DatasetFolder(Path(path))
     shards = _shards(f"{folder.path}", folder.plan.digest)
     made = 0
-    for number in _order(shards.plan.shards, part, parts):
+    count = shards.plan.shards
+    for number in (number for turn in range(parts) for number in range((part + turn) % parts, count, parts)):
         if parent is not None and is_orphan(parent):
             break
         made += make_shard(folder, shards, number)
@@ -67,11 +65,6 @@ def make_shard(folder: DatasetFolder, shards: Shards, number: int) -> bool:
     return True
 
 
-def _order(count: int, part: int, parts: int) -> list[int]:
-    """All numbers, those of one's own part first, then those of the next parts, to help."""
-    return [number for turn in range(parts) for number in range((part + turn) % parts, count, parts)]
-
-
 @lru_cache(maxsize=4)
 def _shards(path: str, digest: str) -> Shards:
     """The shards of a folder, with the kernel that was compiled before."""
@@ -81,11 +74,7 @@ def _shards(path: str, digest: str) -> Shards:
 
 
 def finish(folder: DatasetFolder) -> None:
-    """Finish a data set whose shards are all there, once no worker makes one of them a second time.
-
-    Raises:
-        RuntimeError: a worker does not end
-    """
+    """Finish a data set whose shards are all there, once no worker makes one of them a second time."""
     begin = time.monotonic()
     while not folder.finish():
         if time.monotonic() - begin > MAX_FINISH_SECONDS:
@@ -111,12 +100,7 @@ class _Worker:
 
 
 def run_locally(folder: DatasetFolder, count: int, show: Show) -> None:
-    """Make all shards by processes, and start those anew that die.
-
-    Raises:
-        OSError: a worker is refused something, as on a full disk
-        RuntimeError: workers die again and again without a shard
-    """
+    """Make all shards by processes, and start those anew that die."""
     whole = folder.plan.shards
     board = _Board(whole, folder.done(), show)
     workers = [_start(folder, part, count) for part in range(count)]
@@ -202,16 +186,7 @@ def duration_text(seconds: float) -> str:
 
 
 def run_by_dask(folder: DatasetFolder, scheduler: str | None, show: Show) -> None:
-    """Make all shards as tasks of a Dask cluster, whose workers reach the folder by the same path.
-
-    Args:
-        scheduler: its address, as tcp://host:8786
-
-    Raises:
-        ImportError: Dask is not installed
-        ValueError: no address is given
-        OSError: the scheduler cannot be reached
-    """
+    """Make all shards as tasks of a Dask cluster, whose workers reach the folder by the same path."""
     try:
         from distributed import Client, as_completed
         from distributed.comm import CommClosedError

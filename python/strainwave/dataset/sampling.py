@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import ceil
 
 import numpy as np
@@ -15,6 +15,8 @@ Words = NDArray[np.uint64]
 
 SOBOL_BITS = 32
 FEISTEL_ROUNDS = 4  # from this number on the permutation is pseudo-random (Luby and Rackoff 1988)
+SPLIT_COLUMNS = {"unit": 0x51, "condition": 0x52, "fault": 0x53}  # columns of the hash that are kept apart from the designs
+MIXED_SPLIT = "mixed"  # unit and condition are of different splits
 
 
 def hashed(seed: int, column: int, indices: Indices) -> Words:
@@ -78,18 +80,12 @@ def grid_levels(count: int, columns: int) -> int:
 def points(design: str, seed: int, count: int, columns: int, first: int, last: int) -> Array:
     """Return the points `first` up to `last`, not included, of a design in the unit cube.
 
-    Args:
-        design: a name in `DESIGNS`
-        seed: of the whole design
-        count: points of the whole design
-        columns: dimensions of the cube
-
     Returns:
         coordinates in [0, 1], shape (last - first, columns)
     """
     if columns == 0:
         return np.empty((last - first, 0))
-    return DESIGNS[design](seed, count, columns, np.arange(first, last))
+    return POINT_DESIGNS[design](seed, count, columns, np.arange(first, last))
 
 
 def _random(seed: int, count: int, columns: int, indices: Indices) -> Array:
@@ -119,9 +115,26 @@ def _sobol(seed: int, count: int, columns: int, indices: Indices) -> Array:
     return drawn
 
 
-DESIGNS: dict[str, Callable[[int, int, int, Indices], Array]] = {
+POINT_DESIGNS: dict[str, Callable[[int, int, int, Indices], Array]] = {
     "grid": _grid,
     "latin": _latin,
     "random": _random,
     "sobol": _sobol,
 }
+
+
+def share_of(seed: int, what: str, indices: Indices, count: int, shares: Mapping[str, float], rest: str) -> NDArray[np.str_]:
+    """Return for each of `count` things the name of the share that it is in: the shares are met to within one thing.
+
+    >>> names = share_of(1, "unit", np.arange(10), 10, {"train": 0.7, "test": 0.3}, "")
+    >>> int((names == "train").sum())
+    7
+    """
+    rank = (permuted(seed, SPLIT_COLUMNS[what], indices, count) + 0.5) / count
+    ends = np.cumsum(list(shares.values()))
+    return np.array([*shares, rest])[np.searchsorted(ends, rank)]
+
+
+def joint(by_unit: NDArray[np.str_], by_condition: NDArray[np.str_]) -> NDArray[np.str_]:
+    """Return the split that unit and condition agree on, "mixed" if they do not."""
+    return np.where(by_unit == by_condition, by_unit, MIXED_SPLIT)

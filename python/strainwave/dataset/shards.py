@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from strainwave.dataset.features import add_noise
 from strainwave.dataset.folder import DatasetFolder
 from strainwave.dataset.members import MemberTable, Population
-from strainwave.dataset.splits import joint
+from strainwave.dataset.plan import SamplesTable
+from strainwave.dataset.sampling import joint
 from strainwave.files.writing import replacing
 from strainwave.simulation.ensemble import EnsembleWarning, simulate_many
 
@@ -107,11 +108,10 @@ class Shards:
         used = {name: series[name][:, begin:] for name in population.features.signals}
         with np.errstate(invalid="ignore"):  # of members that failed
             columns = population.features.of(used, angle[:, begin:], speed[:, begin:])
-        return columns, self._decimated(series), dict(runs.failures)
-
-    def _decimated(self, series: Mapping[str, Array]) -> dict[str, Array]:
-        kept = self.plan.samples
-        return {} if kept is None else {name: series[name][:, :: kept.every].astype(np.float32) for name in kept.columns}
+        kept, samples = self.plan.samples, dict[str, Any]()
+        if kept is not None:
+            samples = {name: series[name][:, :: kept.every].astype(np.float32) for name in kept.columns}
+        return columns, samples, dict(runs.failures)
 
     def _labelled(self, members: MemberTable, features: Mapping[str, Array], failures: Mapping[int, str]) -> pyarrow.Table:
         import pyarrow
@@ -179,17 +179,10 @@ class Shards:
 
     def member(self, index: int) -> tuple[pyarrow.Table, pyarrow.Table | None]:
         """Return labels, parameters and features of one member, made alone, and all samples of its run."""
-        from strainwave.dataset.plan import SamplesTable
-
-        whole = replace(self.population, plan=self.plan.model_copy(update={"samples": self._all_samples()}))
-        assert isinstance(whole.plan.samples, SamplesTable)
-        return Shards(whole).tables(index, index + 1)
-
-    def _all_samples(self) -> Any:
-        from strainwave.dataset.plan import SamplesTable
-
         kept = self.plan.samples.columns if self.plan.samples else ()
-        return SamplesTable(columns=tuple(dict.fromkeys([*self.population.recorded, "tracking_error", *kept])), every=1)
+        columns = tuple(dict.fromkeys([*self.population.recorded, "tracking_error", *kept]))
+        plan = self.plan.model_copy(update={"samples": SamplesTable(columns=columns, every=1)})
+        return Shards(replace(self.population, plan=plan)).tables(index, index + 1)
 
 
 def write_table(table: pyarrow.Table, path: Path) -> int:
@@ -198,12 +191,6 @@ def write_table(table: pyarrow.Table, path: Path) -> int:
 
     names = [name for name in table.column_names if name in DICTIONARY_COLUMNS]
     with replacing(path) as file:
-        write(
-            table,
-            file,
-            compression="zstd",
-            compression_level=COMPRESSION_LEVEL,
-            use_dictionary=names,
-            write_page_checksum=True,
-        )
+        options: dict[str, Any] = {"compression": "zstd", "compression_level": COMPRESSION_LEVEL, "write_page_checksum": True}
+        write(table, file, use_dictionary=names, **options)
     return os.stat(path).st_size

@@ -5,7 +5,15 @@ from .actuator_ramp import (
     wave_generator as wave_generator,
 )
 from .current_orders import OrderLine as OrderLine, order_lines as order_lines
-from .inversion import COMBINE as COMBINE, MisalignmentEstimate as MisalignmentEstimate, displaced as displaced
+from .inversion import (
+    COMBINE as COMBINE,
+    MisalignmentEstimate as MisalignmentEstimate,
+    RecoveryModel as RecoveryModel,
+    corrected as corrected,
+    displaced as displaced,
+    recover as recover,
+    refined as refined,
+)
 from .misalignment_sweep import (
     BOTH_LOOPS as BOTH_LOOPS,
     LOBES as LOBES,
@@ -16,5 +24,4 @@ from .misalignment_sweep import (
     swing as swing,
     table_number as table_number,
 )
-from .recovery import RecoveryModel as RecoveryModel, corrected as corrected, recover as recover, refined as refined
 from .smallest_error import DetectionLimit as DetectionLimit, detection_limit as detection_limit

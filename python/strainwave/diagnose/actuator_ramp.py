@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 OUTPUT, INPUT = "output", "input"
 LOOPS = {OUTPUT: "output sensor", INPUT: "motor encoder"}
-ERROR = "gear.kinematic_error"
+ERROR_PATH = "gear.kinematic_error"
 RUN_IN = 0.1  # of the ramp [1], that is left out until the speed is constant
 MAX_STEP = 2e-4  # s, of a simulation
 STEP_MARGIN = 0.7  # of a step [1], as a twisted gear may be stiffer than one at rest
@@ -35,10 +35,10 @@ MIN_ROWS_PER_TURN = 64  # of a turn of the input: separates orders up to 10
 MIN_TIME, MAX_TIME = 1e-6, 600.0  # s, of the ramp
 MIN_TURNS, MAX_TURNS = 3.0, 1e4  # of the input, after the run-in and in all
 MIN_SPEED_SHARE = 0.9  # of the commanded speed [1], that a drive must reach on average
-CHANNELS = ("torque", "current", "output_angle", "input_angle")
+RAMP_CHANNELS = ("torque", "current", "output_angle", "input_angle")
 # The flight actuator paper prints no dimensions. Assumed where the drive has none: those of erratum 2 of the review of dynamic
 # models, 0.6 mm of difference between the half axes.
-ASSUMED = kinematic_error.Misalignment(
+ASSUMED_MISALIGNMENT = kinematic_error.Misalignment(
     major_radius=25.3e-3, minor_radius=24.7e-3, pitch_radius=25e-3, pressure_angle=np.radians(20.0)
 )
 ASSUMED_SECTION_OFFSET = 4e-3  # m, from the centre of tilt to the section, of a drive that states none
@@ -88,16 +88,11 @@ class ActuatorRamp(Presented):
                 "motor moves, as inertia and aerodynamic are"
             )
         turns = stroke * abs(drive.gear.kinematics.ratio) / (2.0 * np.pi)
-        if turns * (1.0 - RUN_IN) < MIN_TURNS:
-            needed = np.degrees(stroke * MIN_TURNS / (turns * (1.0 - RUN_IN)))
-            raise ValueError(
-                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {needed:.3g} deg or more"
-            )
-        if turns > MAX_TURNS:
-            longest = np.degrees(stroke * MAX_TURNS / turns)
-            raise ValueError(
-                f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; take {longest:.3g} deg or less"
-            )
+        needed, longest = MIN_TURNS / (1.0 - RUN_IN), MAX_TURNS
+        if not needed <= turns <= longest:
+            limit = f"{np.degrees(stroke * (needed if turns < needed else longest) / turns):.3g} deg"
+            allowed = f"take {limit} or {'more' if turns < needed else 'less'}"
+            raise ValueError(f"stroke = {np.degrees(stroke):g} deg is {turns:.2g} turns of the input; {allowed}")
         for name in ("feedback", "position_gain"):
             _control_path(drive, name)
         return cls(drive, stroke, duration, longest_step(drive))
@@ -146,7 +141,7 @@ class ActuatorRamp(Presented):
 
     def with_error(self, law: Any) -> ActuatorRamp:
         """Return the ramp with another kinematic error."""
-        return replace(self, drive=self.drive.replace({ERROR: law}))
+        return replace(self, drive=self.drive.replace({ERROR_PATH: law}))
 
     def loaded(self, load_torque: float) -> ActuatorRamp:
         """Return the ramp with a constant torque [N.m] on the output besides the load of the drive."""
@@ -255,7 +250,7 @@ def wave_generator(drive: Drive) -> tuple[Any, bool]:
     (0.025, False)
     """
     own = next(_laws(drive.gear.kinematic_error), None)
-    law: Any = ASSUMED if own is None else own
+    law: Any = ASSUMED_MISALIGNMENT if own is None else own
     straight: dict[str, Any] = {
         name: 0.0 for name, kind, _ in parameters(law) if name.startswith(("housing_", "generator_")) and kind == "number"
     }

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL, DETECTION_PROBABILITY, FALSE_ALARM, detectable_change
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, blocks_of, cells_of
+from strainwave.diagnose.replicates import BOTH_DIRECTIONS, Cell, JointMotion, apart, blocks_of, cells_of
 from strainwave.messages import listed
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse
 
@@ -30,7 +30,7 @@ MAX_BLOCKS = 24  # of a baseline: shorter blocks contain no more of the drift
 MIN_BLOCKS = 6  # of a baseline, by which a spread is estimated
 BLOCK_RESOLUTIONS = 1.5  # resolutions of a block, by which two orders differ at least
 SPREAD_MARGIN = 1.0  # standard deviations of the variance of replicates, added to what noise does not explain of it
-CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
+LINE_CONDITIONS = ("", "speed", "load")  # over which an amplitude may change in a healthy joint, besides a mean
 MIN_BLOCKS_FOR_LINE = 10  # blocks, by which a line over a condition is fitted
 MAX_LEFT_OUT_SHARE = 0.8  # of the squared error of left-out blocks [1], to which a line has to reduce it
 MAX_SPEED_RATIO = 1.25  # by which a block may be faster or slower than all blocks of the baseline
@@ -106,13 +106,10 @@ class BaselineComparison(Presented):
 
 @dataclass(frozen=True, eq=False)
 class Baseline:
-    """Replicates of a healthy joint.
+    """Replicates of a healthy joint: cells of each recording by block, direction and order.
 
-    Attributes:
-        orders: per revolution of the shaft
-        travel: motion of a block [rad]
-        resolution: by which two orders differ at least that its blocks separate, in orders of the shaft
-        cells: of each recording by block, direction and order
+    The motion of a block is its travel [rad]. Its blocks separate two orders that differ by the resolution, in orders of the
+    shaft.
     """
 
     orders: tuple[float, ...]
@@ -126,14 +123,9 @@ class Baseline:
 
 
 def baseline_of(motions: Sequence[JointMotion], orders: Sequence[float]) -> Baseline:
-    """Return the replicates of recordings of a healthy joint.
+    """Return the replicates of recordings of a healthy joint, in the same column and over the same angle.
 
-    Args:
-        motions: the recordings, in the same column and over the same angle
-        orders: per revolution of the shaft, the most important first; of two that a block does not separate the first is kept
-
-    Raises:
-        ValueError: there are no orders, or the motion is too short for enough blocks
+    The most important order, per revolution of the shaft, is first: of two that a block does not separate it is kept.
     """
     if not orders:
         raise ValueError("no order to compare: no line was found and no ratio is known; give --gear or --ratio")
@@ -170,19 +162,13 @@ def compared(
 
     Args:
         baseline: replicates, of a fit that contains all orders that are compared
-        motion: the recording
-        false_alarm: stated rate of false alarms, over all tests of a recording
-        new: orders of the baseline that were found in the recording alone
         searched: number of orders among which these were found; each counts as so many tests
-
-    Raises:
-        ValueError: the rate is no probability
     """
     false_alarm = arguments.probability("false_alarm", false_alarm)
     block = blocks_of(motion, baseline.travel)
     cells = cells_of(motion, baseline.orders, block)
     pairs, outside, sparse = [], dict[str, list[str]](), set[str]()
-    for direction, (name, _) in enumerate(SENSES):
+    for direction, (name, _) in enumerate(BOTH_DIRECTIONS):
         for k, order in enumerate(baseline.orders):
             own = [cell for each in cells if (cell := each[direction][k]) is not None]
             if not own:
@@ -199,7 +185,7 @@ def compared(
     planned = sum(order not in new for _, order, _, _ in pairs)
     changes = []
     for name, order, healthy, alike in pairs:
-        tests = float(planned + len(new)) if order not in new else max(searched, 1.0) * len(SENSES)
+        tests = float(planned + len(new)) if order not in new else max(searched, 1.0) * len(BOTH_DIRECTIONS)
         changes.append(_change(name, order, healthy, alike, tests, false_alarm, order in new))
     remarks = [f"{key}; not compared" for key in outside]
     if sparse:
@@ -213,14 +199,14 @@ def compared(
 
 def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRecording) -> tuple[list[Cell], list[str]]:
     """Return the cells of a recording under conditions that the baseline contains, and why others are left out."""
-    known = [cell for one in healthy for cell in one]
-    speeds, loads = (np.array([getattr(cell, name) for cell in known]) for name in ("speed", "load"))
+    healthy_cells = [cell for one in healthy for cell in one]
+    speeds, loads = (np.array([getattr(cell, name) for cell in healthy_cells]) for name in ("speed", "load"))
     load_room = MAX_LOAD_SHARE * max(float(np.ptp(loads)), float(np.abs(loads).max()))
     bounds = {
         "speed": (float(speeds.min()) / MAX_SPEED_RATIO, float(speeds.max()) * MAX_SPEED_RATIO),
         "load": (float(loads.min()) - load_room, float(loads.max()) + load_room),
     }
-    elsewhere, reason = _elsewhere(known, own, run)
+    elsewhere, reason = _elsewhere(healthy_cells, own, run)
     left, reasons = [], [reason] if reason else []
     for cell, is_elsewhere in zip(own, elsewhere, strict=True):
         if not is_elsewhere and all(low <= getattr(cell, name) <= high for name, (low, high) in bounds.items()):
@@ -235,20 +221,19 @@ def _alike(healthy: Sequence[Sequence[Cell]], own: Sequence[Cell], run: JointRec
     return left, reasons
 
 
-def _elsewhere(known: Sequence[Cell], own: Sequence[Cell], run: JointRecording) -> tuple[list[bool], str]:
+def _elsewhere(healthy_cells: Sequence[Cell], own: Sequence[Cell], run: JointRecording) -> tuple[list[bool], str]:
     """Return True for each cell of a recording at a place that the baseline does not cover, and the reason.
 
     A place is an angle of the output: lines that stand still beat with those that turn with the output. If the baseline covers
     a revolution of the output without a gap, every place comes again.
     """
     ratio = 1.0 if run.side == "output" else run.ratio
-    turns = (
-        float(RATIOS[0]) if ratio is None else ratio
-    )  # of the shaft per revolution of the output; the smallest that makers offer
-    covered = _joined([(cell.first / turns, cell.last / turns) for cell in known])
+    turns = float(STRAIN_WAVE_RATIOS[0]) if ratio is None else ratio  # of the shaft per revolution of the output, at least
+    covered = _joined([(cell.first / turns, cell.last / turns) for cell in healthy_cells])
     if ratio is not None and any(last - first >= tau for first, last in covered):
         return [False] * len(own), ""
-    elsewhere = [not _is_within(cell.first / turns, cell.last / turns, covered) for cell in own]
+    wider = [(low - _margin(low, high), high + _margin(low, high)) for low, high in covered]
+    elsewhere = [not any(low <= cell.first / turns and cell.last / turns <= high for low, high in wider) for cell in own]
     off = [cell for cell, is_elsewhere in zip(own, elsewhere, strict=True) if is_elsewhere]
     if not off:
         return elsewhere, ""
@@ -275,10 +260,6 @@ def _joined(ranges: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         else:
             joined.append((first, last))
     return joined
-
-
-def _is_within(first: float, last: float, covered: Sequence[tuple[float, float]]) -> bool:
-    return any(low - _margin(low, high) <= first and last <= high + _margin(low, high) for low, high in covered)
 
 
 def _margin(first: float, last: float) -> float:
@@ -326,8 +307,7 @@ class _Expected:
 
     def of(self, cells: Sequence[Cell]) -> Array:
         """Return the amplitude under the conditions of cells, shape (n,)."""
-        predicted: Array = _design(self.condition, cells) @ self.values
-        return predicted
+        return np.asarray(_design(self.condition, cells) @ self.values)
 
     def leverage(self, cells: Sequence[Cell]) -> float:
         """Return the variance of the mean prediction over that of a replicate."""
@@ -354,7 +334,7 @@ def _expected(healthy: Sequence[Sequence[Cell]]) -> tuple[str, _Expected]:
     parts = own if len(own) > 1 else [[cell] for cell in cells]  # blocks of a day may share what looks like a condition
     folds = [([cell for other in parts if other is not part for cell in other], part) for part in parts]
     best, least, name = None, np.inf, ""
-    for condition in CONDITIONS if len(cells) >= MIN_BLOCKS_FOR_LINE else ("",):
+    for condition in LINE_CONDITIONS if len(cells) >= MIN_BLOCKS_FOR_LINE else ("",):
         fit = _fitted(condition, cells)
         error = 0.0
         for kept, left_out in folds:

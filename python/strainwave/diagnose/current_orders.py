@@ -16,15 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import hypot, inf, nan, pi, tau
+from math import hypot, inf, nan, pi
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.diagnose.detection import FALSE_ALARM, amplitude_interval, false_alarm_of
-from strainwave.diagnose.motion import SampledMotion, motion_of
-from strainwave.diagnose.regression import OrderRegression, regressions
+from strainwave.diagnose.regression import OrderRegression, SampledMotion, motion_of, regressions
 from strainwave.files.recording import Recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented
@@ -142,7 +141,9 @@ def order_lines(
     >>> two.detected, round(two.amplitude, 3), round(two.sigma, 4), four.detected, four.interval[0]
     (True, 0.01, 0.0005, False, 0.0)
     """
-    wanted = _wanted(orders)
+    wanted = [float(order) for order in arguments.positive_series("orders", orders)]
+    if len(set(wanted)) < len(wanted):
+        raise ValueError(f"an order occurs twice in orders = {listed(f'{order:g}' for order in wanted)}; leave one out")
     false_alarm = arguments.probability("false_alarm", false_alarm)
     motion = motion_of(recording, column, max(wanted), load_column=load_column, angle=angle, ratio=ratio, rate=rate)
     chosen, left_out = _chosen(wanted, motion)
@@ -158,67 +159,13 @@ def order_lines(
     )
 
 
-def synchronous_average(
-    recording: Recording, column: str, *, angle: str = "input_angle", cells: int = 128, period: float = 1.0
-) -> Recording:
-    """Return the mean of a column over whole revolutions, as a curve over the angle of one.
-
-    What does not repeat with the shaft averages out: noise falls with the root of the revolutions. Orders that are no multiple
-    of 1 / `period`, as 2 z_c / z_f within one revolution, average out as well.
-
-    Args:
-        recording: with a shaft that turns one way or both
-        column: to average
-        angle: column with the angle of the shaft
-        cells: of the angle
-        period: revolutions of the shaft in the curve: its ratio for a revolution of the output [1]
-
-    Returns:
-        Recording with the columns of the angle [rad], the mean, and `sigma`, its standard deviation if samples are independent.
-
-    >>> theta = np.linspace(0.0, 60.0 * np.pi, 30001)
-    >>> units = {"input_angle": "rad", "current": "A"}
-    >>> curve = synchronous_average(Recording({"input_angle": theta, "current": np.sin(2 * theta)}, units), "current")
-    >>> round(float(curve["current"].max()), 2)
-    1.0
-    """
-    cells = arguments.whole("cells", cells, 8)
-    period = arguments.number("period", period, low=0.0)
-    motion = motion_of(recording, column, cells / 4.0 / period, angle=angle)
-    series = motion.series - _trend(motion)
-    place = np.floor(motion.angle / (tau * period) % 1.0 * cells).astype(int) % cells
-    count = np.maximum(np.bincount(place, minlength=cells), 1)
-    mean = np.bincount(place, series, cells) / count
-    spread = np.sqrt(np.bincount(place, (series - mean[place]) ** 2, cells) / np.maximum(count - 1, 1))
-    middle = tau * period * (np.arange(cells) + 0.5) / cells
-    unit = recording.unit(column)
-    return Recording(
-        {angle: middle, column: mean, "sigma": spread / np.sqrt(count)}, {angle: "rad", column: unit, "sigma": unit}
-    )
-
-
-def _trend(motion: SampledMotion) -> Array:
-    """Return the straight line through the series over its rows."""
-    rows = np.arange(len(motion.series))
-    line: Array = np.asarray(np.polyval(np.polyfit(rows, motion.series, 1), rows), dtype=np.float64)
-    return line
-
-
-def _wanted(orders: ArrayLike) -> list[float]:
-    wanted = np.atleast_1d(arguments.numbers("orders", orders))
-    if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
-        raise ValueError("orders must be one series of positive numbers")
-    if len(np.unique(wanted)) < len(wanted):
-        raise ValueError(f"an order occurs twice in orders = {listed(f'{each:g}' for each in wanted)}; leave one out")
-    return [float(each) for each in wanted]
-
-
 def _chosen(wanted: Sequence[float], motion: SampledMotion) -> tuple[list[float], dict[float, str]]:
     """Return the orders that the record determines, and the reason of each other. Of two that merge, the first one stays."""
     chosen: list[float] = []
     reasons: dict[float, str] = {}
     steps = float(np.quantile(np.abs(motion.speed), 0.99)) * motion.step / motion.every
     for order in wanted:
+        near = (other for other in chosen if abs(order - other) * motion.revolutions < MIN_SEPARATION)
         if order * motion.revolutions < MIN_PERIODS:
             needed = MIN_PERIODS / order
             reasons[order] = (
@@ -228,31 +175,21 @@ def _chosen(wanted: Sequence[float], motion: SampledMotion) -> tuple[list[float]
             reasons[order] = (
                 f"order {order:g} passes {order * steps / pi:.2g} half periods between samples; record faster, or turn slower"
             )
-        elif (other := _merged(order, chosen, motion.revolutions)) is not None:
-            reasons[order] = _separation(order, other, motion.revolutions)
+        elif (other := next(near, None)) is not None:
+            reasons[order] = (
+                f"orders {other:g} and {order:g} are {NOT_SEPARATED}: this takes {1.0 / abs(order - other):.4g} turns, "
+                f"{motion.revolutions:.4g} are recorded; the amplitude of order {other:g} is that of both"
+            )
         else:
             chosen.append(order)
     return chosen, reasons
-
-
-def _merged(order: float, others: Sequence[float], revolutions: float) -> float | None:
-    return next((other for other in others if abs(order - other) * revolutions < MIN_SEPARATION), None)
-
-
-def _separation(order: float, other: float, revolutions: float) -> str:
-    needed = 1.0 / abs(order - other)
-    return (
-        f"orders {other:g} and {order:g} are {NOT_SEPARATED}: this takes {needed:.4g} turns, {revolutions:.4g} are recorded; "
-        f"the amplitude of order {other:g} is that of both"
-    )
 
 
 def _near_remarks(chosen: Sequence[float], motion: SampledMotion) -> dict[float, tuple[str, ...]]:
     """Return remarks on 2 and 2 z_c / z_f, which differ by two periods in a revolution of the output."""
     if motion.ratio != motion.ratio or motion.ratio < 10.0:
         return {}
-    needed = 0.5 * motion.ratio
-    if motion.revolutions >= needed * MIN_SEPARATION:
+    if motion.revolutions >= (needed := 0.5 * motion.ratio) * MIN_SEPARATION:
         return {}
     remark = (
         f"order 2 and 2 z_c/z_f are {NOT_SEPARATED} before half a revolution of the output, {needed:.4g} of the input; "
@@ -261,32 +198,30 @@ def _near_remarks(chosen: Sequence[float], motion: SampledMotion) -> dict[float,
     return {order: (remark,) for order in chosen if abs(order - 2.0) < 2.5 / motion.ratio}
 
 
-def _line(each: OrderRegression, motion: SampledMotion, tests: int, allowed: float, near: Sequence[str]) -> OrderLine:
+def _line(fit: OrderRegression, motion: SampledMotion, tests: int, allowed: float, near: Sequence[str]) -> OrderLine:
     """Return an order with its parts."""
     series = motion.series[:, None]
-    variance = float(each.variance(series)[0])
-    found = each.estimator @ motion.series
-    mean = each.mean_estimator @ motion.series
-    evidence = float(each.evidence(series)[0])
-    alarm = false_alarm_of(evidence, len(found), each.evidence_freedom, tests)
-    amplitude = hypot(*mean) if len(each.names) == 1 else float(np.sqrt(2.0 * np.mean((each.shape @ found) ** 2)))
-    covariance = each.covariance(motion.series)
+    variance = float(fit.variance(series)[0])
+    coefficients, mean = fit.estimator @ motion.series, fit.mean_estimator @ motion.series
+    alarm = false_alarm_of(float(fit.evidence(series)[0]), len(coefficients), fit.evidence_freedom, tests)
+    amplitude = hypot(*mean) if len(fit.names) == 1 else float(np.sqrt(2.0 * np.mean((fit.shape @ coefficients) ** 2)))
+    covariance = fit.covariance(motion.series)
     parts, waves = {}, {}
-    for k, name in enumerate(each.names):
+    for k, name in enumerate(fit.names):
         own = slice(2 * k, 2 * k + 2)
-        sine, cosine = found[own].tolist()
+        sine, cosine = coefficients[own].tolist()
         parts[name] = (hypot(sine, cosine), float(np.sqrt(0.5 * np.trace(covariance[own, own]))))
         waves[name] = complex(sine, cosine)
     return OrderLine(
-        order=each.order,
+        order=fit.order,
         amplitude=amplitude,
         phase=float(np.arctan2(mean[1], mean[0])),
-        sigma=float(np.sqrt(0.5 * variance * np.trace(each.mean_factor))),
+        sigma=float(np.sqrt(0.5 * variance * np.trace(fit.mean_factor))),
         false_alarm=alarm,
         detected=alarm < allowed,
         parts=parts,
         waves=waves,
-        freedom=each.freedom,
+        freedom=fit.freedom,
         samples=len(motion.series) * motion.every,
         remarks=(*near, *motion.remarks),
     )

@@ -28,7 +28,6 @@ def false_alarm_of(evidence: float, parts: int, freedom: float, tests: int = 1) 
         evidence: F of a test [1]
         parts: amplitudes in it, two for each line [1]
         freedom: degrees of freedom of the level of the noise [1]; inf if the level is known
-        tests: number of tests that share the rate
 
     >>> round(false_alarm_of(6.9078, 2, inf), 6)  # exp(-F) for a known level
     0.001
@@ -52,13 +51,9 @@ def threshold_of(false_alarm: float, parts: int, freedom: float, tests: int = 1)
 
 
 def power_of(signal_to_noise: float, false_alarm: float, freedom: float, tests: int = 1) -> float:
-    """Return the probability that a line is detected.
+    """Return the probability that a line is detected, at a ratio of its amplitude to the standard deviation of a part [1].
 
-    Args:
-        signal_to_noise: amplitude over the standard deviation of an amplitude's part [1]
-        false_alarm: allowed probability of a false alarm, over all tests
-        freedom: degrees of freedom of the level of the noise
-        tests: number of tests that share the rate
+    The probability of a false alarm is that over all tests.
 
     >>> round(power_of(0.0, 1e-3, 60.0), 6), round(power_of(5.0, 1e-3, inf), 3)
     (0.001, 0.919)
@@ -68,8 +63,7 @@ def power_of(signal_to_noise: float, false_alarm: float, freedom: float, tests: 
     if signal_to_noise == 0.0:
         return false_alarm / tests
     threshold, shift = threshold_of(false_alarm, 2, freedom, tests), signal_to_noise**2
-    tail = ncf.sf(threshold, 2, freedom, shift) if isfinite(freedom) else ncx2.sf(2.0 * threshold, 2, shift)
-    return float(tail)
+    return float(ncf.sf(threshold, 2, freedom, shift) if isfinite(freedom) else ncx2.sf(2.0 * threshold, 2, shift))
 
 
 def needed_signal_to_noise(probability: float, false_alarm: float, freedom: float, tests: int = 1) -> float:
@@ -90,11 +84,6 @@ def needed_signal_to_noise(probability: float, false_alarm: float, freedom: floa
 
 def detectable_change(probability: float, false_alarm: float, freedom: float) -> float:
     """Return the change over its standard deviation that a two-sided test by Student's distribution finds with a probability.
-
-    Args:
-        probability: of its detection
-        false_alarm: of the test, without a change
-        freedom: degrees of freedom of the standard deviation
 
     >>> round(detectable_change(0.9, 1e-3, 1e6), 3)  # 3.291 + 1.282
     4.572
@@ -119,10 +108,9 @@ def amplitude_interval(
     zero if noise alone may give as much.
 
     Args:
-        amplitude: found, any unit
+        amplitude: in any unit
         sigma: standard deviation of each of its two parts, in that unit
         freedom: degrees of freedom of the level of the noise
-        confidence: of the interval
 
     >>> low, high = amplitude_interval(1.0, 0.1)
     >>> round(low, 3), round(high, 3)
@@ -134,12 +122,8 @@ def amplitude_interval(
 
     from strainwave import arguments
 
-    confidence = arguments.probability("confidence", confidence)
-    if not sigma > 0.0:
-        return amplitude, amplitude
-    outside = 0.5 * (1.0 - confidence)
-    size = amplitude / sigma
-    if size > MAX_SIGNAL_TO_NOISE:
+    outside = 0.5 * (1.0 - arguments.probability("confidence", confidence))
+    if not sigma > 0.0 or (size := amplitude / sigma) > MAX_SIGNAL_TO_NOISE:
         return amplitude, amplitude
     margin = 4.0 * sqrt(max(1.0, size)) + 0.5 * size * (8.0 / sqrt(freedom) if isfinite(freedom) else 0.0) + 8.0
 

@@ -16,9 +16,9 @@ from strainwave.diagnose.geometry import Geometry, misalignment_from_current
 from strainwave.diagnose.health import CatalogueLife, HealthIndicator, HealthTrend, catalogue_life, condition, trend
 from strainwave.diagnose.named_orders import NamedOrder, causes, name_of, named_orders
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.diagnose.replicates import SENSES, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
+from strainwave.diagnose.replicates import BOTH_DIRECTIONS, Cell, JointMotion, apart, cells_of, gear_lines, joint_motion
 from strainwave.diagnose.response import error_response
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
+from strainwave.diagnose.smallest_error import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import without_name
@@ -166,17 +166,16 @@ class Diagnosis(Presented, Reported):
 
 @dataclass(frozen=True)
 class Question:
-    """Settings of a diagnosis.
+    """Settings of a diagnosis; what is not known or not asked for is None or empty.
 
     Attributes:
-        gear_set: of the joint; None if it is not known
-        ratio: size of the ratio; None if it is not known
+        ratio: its size
         orders: further orders per revolution of the input
         bearings: `sw.fault.WaveGeneratorBearing` with the geometry of bearings, whose orders are named
         false_alarm: stated rate of false alarms, over all tests of a recording
-        hours: of operation, by the name of the recording; empty if they are not known
-        threshold: of the health indicator, at which the gear is to be exchanged; None if there is none
-        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero; None if not asked
+        hours: of operation, by the name of the recording
+        threshold: of the health indicator, at which the gear is to be exchanged
+        ramp_drive: drive whose misalignment is estimated from recordings that are ramps from its zero
     """
 
     gear_set: GearSet | None = None
@@ -222,18 +221,26 @@ def diagnosed(
     arguments.probability("false_alarm", question.false_alarm)
     refused = dict(refused or {})
     if not runs:
-        raise ValueError(_all_refused(refused) or "there is no recording to diagnose; give one or more")
-    _check_alike([*runs, *baseline])
+        reasons = "; ".join(f"{name}: {why}" for name, why in refused.items())
+        raise ValueError(reasons or "there is no recording to diagnose; give one or more")
+    first = runs[0]
+    for run in (*runs, *baseline):
+        for what, one, other in (("column", first.column, run.column), ("shaft", first.side, run.side)):
+            if one != other:
+                raise ValueError(
+                    f"{run.name}: {what} {other}, but {one} in {first.name}; recordings of one joint are compared in the same "
+                    f"column over the same shaft: name them with --column, or diagnose them apart"
+                )
     healthy = [joint_motion(run) for run in baseline]
-    known = [line for run in baseline for line in gear_lines(_blind(run, question))]
+    baseline_lines = [line for run in baseline for line in gear_lines(_blind(run))]
     done: list[RunDiagnosis] = []
     for run in runs:
         try:
-            done.append(_run(run, question, healthy, known))
+            done.append(_run(run, question, healthy, baseline_lines))
         except ValueError as error:
             refused[run.name] = without_name(str(error), run.name)
     if not done:
-        raise ValueError(_all_refused(refused))
+        raise ValueError("; ".join(f"{name}: {why}" for name, why in refused.items()))
     remarks: list[str] = []
     if not baseline:
         remarks.append(
@@ -255,45 +262,31 @@ def diagnosed(
     )
 
 
-def _all_refused(refused: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {why}" for name, why in refused.items())
-
-
-def _blind(run: JointRecording, question: Question) -> Ripple:
+def _blind(run: JointRecording) -> Ripple:
     return ripple(
         run.recording, run.column, angle=run.angle, side=run.side, ratio=run.ratio, rate=run.rate, other_angles=run.others
     )
 
 
-def _check_alike(runs: Sequence[JointRecording]) -> None:
-    """Raise ValueError for recordings that cannot be compared."""
-    first = runs[0]
-    for run in runs[1:]:
-        for what, one, other in (("column", first.column, run.column), ("shaft", first.side, run.side)):
-            if one != other:
-                raise ValueError(
-                    f"{run.name}: {what} {other}, but {one} in {first.name}; recordings of one joint are compared in the same "
-                    f"column over the same shaft: name them with --column, or diagnose them apart"
-                )
-
-
-def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]) -> RunDiagnosis:
-    found = _blind(run, question)
+def _run(
+    run: JointRecording, question: Question, healthy: Sequence[JointMotion], baseline_lines: Sequence[float]
+) -> RunDiagnosis:
+    blind = _blind(run)
     motion = joint_motion(run)
     named = question.named_orders(run)
-    orders, response = _against_noise(motion, named, found, question)
-    comparison, remarks = _compared(motion, found, question, healthy, known)
+    orders, response = _against_noise(motion, named, blind, question)
+    comparison, remarks = _compared(motion, blind, question, healthy, baseline_lines)
     alarms = (
-        [] if comparison is None else [_located(each.order, comparison, found, motion, known) for each in comparison.alarms]
+        [_located(each.order, comparison, blind, motion, baseline_lines) for each in comparison.alarms] if comparison else []
     )
     name = name_of(*alarms[0], named) if alarms else ""
-    verdict, reason = _verdict(orders, comparison, found, name, bool(healthy), remarks, run.unit)
+    verdict, reason = _verdict(orders, comparison, blind, name, bool(healthy), remarks, run.unit)
     geometry = _geometry(run, question, remarks)
     return RunDiagnosis(
         run.name,
         run,
-        found,
-        _wave(motion, found),
+        blind,
+        _wave(motion, blind),
         orders,
         response,
         comparison,
@@ -304,7 +297,7 @@ def _run(run: JointRecording, question: Question, healthy: Sequence[JointMotion]
         motion.span * run.per_input,
         motion.load,
         causes(alarms, run.per_input, question.kinematics, question.bearings),
-        tuple(dict.fromkeys([*run.remarks, *found.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
+        tuple(dict.fromkeys([*run.remarks, *blind.remarks, *remarks, *(() if comparison is None else comparison.remarks)])),
     )
 
 
@@ -320,19 +313,19 @@ def _geometry(run: JointRecording, question: Question, remarks: list[str]) -> Ge
 
 
 def _compared(
-    motion: JointMotion, found: Ripple, question: Question, healthy: Sequence[JointMotion], known: Sequence[float]
+    motion: JointMotion, blind: Ripple, question: Question, healthy: Sequence[JointMotion], baseline_lines: Sequence[float]
 ) -> tuple[BaselineComparison | None, list[str]]:
     """Return the comparison with the baseline, or why there is none."""
     if not healthy:
         return None, []
-    named = [each for each in question.named_orders(motion.run) if each.order <= found.highest]
+    named = [each for each in question.named_orders(motion.run) if each.order <= blind.highest]
     multiples = {each.order for each in named if each.is_multiple}
     resolution = 1.0 / max(each.span for each in healthy)
     # a line is where it was found, also next to a whole order
-    planned = apart([*known, *(each.order for each in named)], resolution)
-    own = apart([*planned, *gear_lines(found)], resolution)[len(planned) :]
+    planned = apart([*baseline_lines, *(each.order for each in named)], resolution)
+    own = apart([*planned, *gear_lines(blind)], resolution)[len(planned) :]
     ranked = [*(each for each in planned if each not in multiples), *own, *(each for each in planned if each in multiples)]
-    searched = (found.highest - found.lowest) * max(found.revolutions, 1.0)
+    searched = (blind.highest - blind.lowest) * max(blind.revolutions, 1.0)
     try:
         baseline = baseline_of(healthy, ranked)
     except ValueError as error:
@@ -342,24 +335,24 @@ def _compared(
 
 
 def _located(
-    order: float, comparison: BaselineComparison, found: Ripple, motion: JointMotion, known: Sequence[float]
+    order: float, comparison: BaselineComparison, blind: Ripple, motion: JointMotion, baseline_lines: Sequence[float]
 ) -> tuple[float, float]:
     """Return where the line of an alarm is, and with what resolution.
 
     The blocks that were compared separate less than the recording. A line that is new and alone among what they do not
     separate is the one that changed: it is where the blind search found it in the whole recording.
     """
-    near = [line for line in gear_lines(found) if abs(line - order) < comparison.resolution]
-    if len(near) == 1 and all(abs(line - near[0]) >= comparison.resolution for line in known):
+    near = [line for line in gear_lines(blind) if abs(line - order) < comparison.resolution]
+    if len(near) == 1 and all(abs(line - near[0]) >= comparison.resolution for line in baseline_lines):
         return near[0], 1.0 / max(motion.span, 1e-300)
     return order, comparison.resolution
 
 
 def _against_noise(
-    motion: JointMotion, named: Sequence[NamedOrder], found: Ripple, question: Question
+    motion: JointMotion, named: Sequence[NamedOrder], blind: Ripple, question: Question
 ) -> tuple[tuple[OrderAgainstNoise, ...], str]:
     """Return the named orders that the samples follow and the record separates, and the source of their response to errors."""
-    followed = [each for each in named if each.order <= found.highest]
+    followed = [each for each in named if each.order <= blind.highest]
     kept = set(apart([each.order for each in followed], 1.0 / max(motion.span, 1e-12)))
     separate = [each for each in followed if each.order in kept]
     if not separate:
@@ -402,7 +395,7 @@ def _threshold(cell: Cell, false_alarm: float, tests: int) -> float:
 def _verdict(
     orders: Sequence[OrderAgainstNoise],
     comparison: BaselineComparison | None,
-    found: Ripple,
+    blind: Ripple,
     name: str,
     has_baseline: bool,
     remarks: Sequence[str],
@@ -436,25 +429,25 @@ def _verdict(
     if has_baseline:
         why = [*remarks, *(() if comparison is None else comparison.remarks)]
         return "not comparable", why[0] if why else "no block of the recording has conditions that the baseline contains"
-    count = sum(line.kind in ("order", "either") and not line.joint for line in found.lines)
+    count = sum(line.kind in ("order", "either") and not line.joint for line in blind.lines)
     if count or any(each.detected for each in orders):
         lines = max(count, sum(each.detected for each in orders))
         return "lines found", f"{lines} {'line repeats' if lines == 1 else 'lines repeat'} with the angle of this joint"
     return "no line found", "no line stands out of the noise, which is no proof of health"
 
 
-def _wave(motion: JointMotion, found: Ripple) -> WaveRipple | None:
+def _wave(motion: JointMotion, blind: Ripple) -> WaveRipple | None:
     """Return the ripple of the wave generator: of the lines of a blind search the one that is order 2 of the ratio."""
-    own = [line for line in found.lines if line.kind in ("order", "either") and not line.joint]
-    line = _wave_line(own, motion, found)
+    own = [line for line in blind.lines if line.kind in ("order", "either") and not line.joint]
+    line = _wave_line(own, motion, blind)
     if line is None:
         return None
     others = [each.order for each in own if each is not line][:MAX_OTHER_LINES]
     orders = apart([line.order, *others], 1.0 / motion.span)
-    return WaveRipple(line.order, line.order_sigma, found.concluded, line.false_alarm, _by_load(motion, orders))
+    return WaveRipple(line.order, line.order_sigma, blind.concluded, line.false_alarm, _by_load(motion, orders))
 
 
-def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, found: Ripple) -> SpectrumLine | None:
+def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, blind: Ripple) -> SpectrumLine | None:
     reach = WAVE_RESOLUTIONS / motion.span
     per_input = motion.run.per_input
     if motion.run.side == "input":
@@ -462,7 +455,7 @@ def _wave_line(own: Sequence[SpectrumLine], motion: JointMotion, found: Ripple) 
     elif np.isfinite(per_input):
         wanted = [WAVE_ORDER * (per_input + shift) for shift in (0.0, 1.0, -1.0)]
     else:  # motors have combs of whole orders, too: a line that may be one of time is not taken for the wave generator's
-        wanted = [WAVE_ORDER * (ratio + shift) for ratio in found.concluded for shift in (0.0, 1.0, -1.0)]
+        wanted = [WAVE_ORDER * (ratio + shift) for ratio in blind.concluded for shift in (0.0, 1.0, -1.0)]
         own = [line for line in own if line.kind == "order"]
     near = [line for line in own if any(abs(line.order - order) <= max(reach, 3.0 * line.order_sigma) for order in wanted)]
     return max(near, key=lambda line: line.evidence, default=None)
@@ -476,7 +469,7 @@ def _by_load(motion: JointMotion, orders: Sequence[float]) -> tuple[LoadCell, ..
     levels = LOAD_LEVELS if is_varied else 1
     edges = np.quantile(size[moving] if moving.any() else size, np.linspace(0.0, 1.0, levels + 1))
     places = np.clip(np.searchsorted(edges, size, side="right") - 1, 0, levels - 1)
-    kinds = [(name, sign, level) for name, sign in SENSES for level in range(levels)]
+    kinds = [(name, sign, level) for name, sign in BOTH_DIRECTIONS for level in range(levels)]
     parts = [(shaft.own.sense == sign) & (places == level) for _, sign, level in kinds]
     (cells,) = cells_of(motion, orders, np.zeros(len(size), dtype=int), parts)
     return tuple(
@@ -494,10 +487,10 @@ def _trend(done: Sequence[RunDiagnosis], question: Question, remarks: list[str])
         return None
     if not question.hours:
         raise ValueError("--threshold needs the hours of operation of each recording: add --hours, one number for each")
-    by_name = [(each.condition.indicator, question.hours[each.name]) for each in done if each.condition is not None]
-    indicators, hours = [one for one, _ in by_name], [one for _, one in by_name]
+    judged = [run for run in done if run.condition is not None]
+    hours = [question.hours[run.name] for run in judged]
     try:
-        return trend(hours, indicators, question.threshold)
+        return trend(hours, [run.condition.indicator for run in judged if run.condition], question.threshold)
     except ValueError as error:
         remarks.append(f"no trend: {error}")
         return None

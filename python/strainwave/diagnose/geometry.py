@@ -19,8 +19,8 @@ from strainwave.diagnose.actuator_ramp import RUN_IN, ActuatorRamp
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
 from strainwave.diagnose.inversion import (
     COMBINE,
+    ERROR_ORDERS,
     M_PER_MICRON,
-    ORDERS,
     MeasuredOrders,
     MisalignmentEstimate,
     covariance_by,
@@ -33,9 +33,8 @@ from strainwave.diagnose.inversion import (
     tilted,
     to_point,
 )
-from strainwave.diagnose.possible_drives import TREND_DEGREES, PossibleDrives
-from strainwave.diagnose.reaction import CurrentPerError
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE
+from strainwave.diagnose.possible_drives import TREND_DEGREES, CurrentPerError, PossibleDrives
+from strainwave.diagnose.smallest_error import MAX_CATALOGUE_AMPLITUDE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -48,14 +47,10 @@ SHARES_OF_TILT = 11  # between eccentricity alone and tilt alone, at which the r
 MAX_TREND_SIGMA = 4.0  # a trend further from those of the drawn drives contradicts the set
 REFERENCE_ORDER = 2.0  # at which strain wave gears have most of their error
 MAX_MISFIT_RATIO = 4.0  # a way of sharing whose misfit is larger than the least by this factor is not named as possible
-WORDS_OF_SHARING = {
-    "single": "one lobe carries",
-    "mean": "both lobes share the load",
-    "max": "the lobe further out carries",
-}
+WORDS_OF_SHARING = {"single": "one lobe carries", "mean": "both lobes share the load", "max": "the lobe further out carries"}
 MAX_MISFIT = 8.0  # mean square of the residual of the orders over that of noise and model; by chance 1 record in 10^4 has more
 PENALTY_PER_PARAMETER = 6.0  # of a sum of squares: chance alone gains as much in 1 of 70 records
-SILENT = "e2 and alpha alone change no harmonic and are not identifiable from this record"
+SILENT_PARAMETERS = "e2 and alpha alone change no harmonic and are not identifiable from this record"
 
 
 @dataclass(frozen=True)
@@ -173,9 +168,11 @@ class Geometry(Presented):
             return " ".join([*lines, f"{self.sensitivity.words()}."])
         if self.condition != "misaligned":
             arcmin = 60.0 * np.degrees(self.sensitivity.least_error)
-            lines.append(f"No misalignment shown; errors below {arcmin:.2g} arcmin at order 2 would not be ({SILENT}).")
+            lines.append(
+                f"No misalignment shown; errors below {arcmin:.2g} arcmin at order 2 would not be ({SILENT_PARAMETERS})."
+            )
             return " ".join(lines)
-        lines.append(f"{in_words(*self.ends, self.height)}; {SILENT}.")
+        lines.append(f"{in_words(*self.ends, self.height)}; {SILENT_PARAMETERS}.")
         lines += [f"Not excluded: {in_words(*each, self.height)}." for each in self.others.values()]
         return " ".join(lines)
 
@@ -210,11 +207,7 @@ def as_tilt(estimate: MisalignmentEstimate, tilt_shift: Array) -> MisalignmentEs
 
 
 def ramp_of(recording: Recording, drive: Drive) -> ActuatorRamp:
-    """Return the ramp of a record that begins with it: its duration, and the stroke of its speed.
-
-    Raises:
-        ValueError: the input turns against the sense of a ramp to positive output angles, or `ActuatorRamp` refuses the ramp
-    """
+    """Return the ramp of a record that begins with it: its duration, and the stroke of its speed."""
     time = recording.values("time", "s")
     duration = float(time[-1] - time[0])
     angle = recording.values("input_angle", "rad")
@@ -241,7 +234,7 @@ def misalignment_from_current(
     Args:
         recording: time, input_angle and current of a ramp, from its beginning; the angle has the zero of the model
         gear_set: the drive with the sources and spreads of its numbers; those of a bare `Drive` count as assumed
-        ramp: the run; by default the duration and the speed of the record, without load besides that of the drive
+        ramp: by default of the duration and the speed of the record, without load besides that of the drive
         drives: of the set in that ramp, if several records of one ramp are diagnosed
         reference_error: amplitude of the error at the output that a run has to show, or it is insensitive [rad]
 
@@ -249,40 +242,38 @@ def misalignment_from_current(
         ValueError: a column is missing, or the record is no ramp that the drive follows
     """
     drive = gear_set if isinstance(gear_set, Drive) else gear_set.drive
-    known = drives or PossibleDrives.of(gear_set, ramp or ramp_of(recording, drive))
-    begin = float(recording.values("time", "s")[0])
-    settled = recording.between(begin + known.ramp.duration * RUN_IN, begin + known.ramp.duration)
-    gains, ripple, off = known.like(settled)
-    orders = measured_orders(less_run(settled, known.straight, "current"), "current")
+    drives = drives or PossibleDrives.of(gear_set, ramp or ramp_of(recording, drive))
+    begin, law = float(recording.values("time", "s")[0]), drives.law
+    settled = recording.between(begin + drives.ramp.duration * RUN_IN, begin + drives.ramp.duration)
+    gains, ripple, off = drives.like(settled)
+    orders = measured_orders(less_run(settled, drives.straight, "current"), "current")
     measured = replace(orders, values=orders.values - ripple.mean(axis=0), noise=np.hypot(orders.noise, _spread(ripple)))
-    found = {
-        combine: _estimate(measured, orders.noise, ripple, gains, known.law.replace(combine=combine)) for combine in COMBINE
-    }
-    teeth_part = 0.5 * float(known.law.major_radius - known.law.minor_radius)
-    possible = {combine: each for combine, each in found.items() if each.estimate.size < teeth_part} or found
-    best = min(possible, key=lambda combine: found[combine].penalised)
-    limit = MAX_MISFIT_RATIO * max(found[best].estimate.misfit, 1.0)
-    for combine in [each for each in possible if found[each].estimate.misfit < limit]:
-        law = known.law.replace(combine=combine)
-        first = found[combine].estimate
-        larger = gains * known.gain_of_size(displaced(law, first.m, first.c_x))
-        found[combine] = possible[combine] = _estimate(measured, orders.noise, ripple, larger, law)
+    estimates = {way: _estimate(measured, orders.noise, ripple, gains, law.replace(combine=way)) for way in COMBINE}
+    teeth_part = 0.5 * float(law.major_radius - law.minor_radius)
+    possible = {way: each for way, each in estimates.items() if each.estimate.size < teeth_part} or estimates
+    best = min(possible, key=lambda way: estimates[way].penalised)
+    limit = MAX_MISFIT_RATIO * max(estimates[best].estimate.misfit, 1.0)
+    for way in [way for way in possible if estimates[way].estimate.misfit < limit]:
+        first, shared = estimates[way].estimate, law.replace(combine=way)
+        larger = gains * drives.gain_of_size(displaced(shared, first.m, first.c_x))
+        estimates[way] = possible[way] = _estimate(measured, orders.noise, ripple, larger, shared)
+    chosen = estimates[best]
     others = {
-        combine: (each.estimate, as_tilt(each.estimate, each.tilt_shift))
-        for combine, each in possible.items()
-        if combine != best and each.estimate.misfit < limit and not found[best].estimate.contains(each.estimate.m)
+        way: (each.estimate, as_tilt(each.estimate, each.tilt_shift))
+        for way, each in possible.items()
+        if way != best and each.estimate.misfit < limit and not chosen.estimate.contains(each.estimate.m)
     }
     return Geometry(
-        found[best].estimate,
-        found[best].tilt_shift,
-        found[best].of_noise,
+        chosen.estimate,
+        chosen.tilt_shift,
+        chosen.of_noise,
         others,
         float(np.abs(measured.values).max()),
         measured.false_alarm < FALSE_ALARM,
-        _sensitivity(measured, gains, known.parts, reference_error),
-        known.parts,
-        float(known.law.offset),
-        (*_contradictions(off), *_contradictions_of_fit(found[best].estimate)),
+        _sensitivity(measured, gains, drives.parts, reference_error),
+        drives.parts,
+        float(law.offset),
+        _contradictions(off, chosen.estimate.misfit),
     )
 
 
@@ -304,7 +295,7 @@ class _Estimate:
     def penalised(self) -> float:
         """Sum of squares of the residual, and a penalty of each parameter: of two ways that fit, the simpler one is taken."""
         parameters = 3 if self.estimate.combine == "max" else 2
-        return self.estimate.misfit * (2 * len(ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
+        return self.estimate.misfit * (2 * len(ERROR_ORDERS) - parameters) + PENALTY_PER_PARAMETER * parameters
 
 
 def _estimate(measured: MeasuredOrders, noise: Array, ripple: Complex, gains: Complex, law: Any) -> _Estimate:
@@ -336,30 +327,27 @@ def _spread(values: Complex) -> Array:
 
 
 def _sensitivity(measured: MeasuredOrders, gains: Complex, parts: CurrentPerError, error: float) -> Sensitivity:
-    place = ORDERS.index(REFERENCE_ORDER)
+    place = ERROR_ORDERS.index(REFERENCE_ORDER)
     current = error * float(np.abs(gains[:, place].mean()))
-    needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, measured.degrees, len(ORDERS))
+    needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, measured.degrees, len(ERROR_ORDERS))
     resolved = needed * float(measured.noise[place])
     per_torque = error * abs(complex(parts.per_torque[place]))
     return Sensitivity(error, REFERENCE_ORDER, current, resolved, parts.torque, resolved / per_torque)
 
 
-def _contradictions(off: Array) -> list[str]:
+def _contradictions(off: Array, misfit: float) -> tuple[str, ...]:
     names = ("mean", "slope over the angle", "curvature over the angle")
     far = [f"{name} by {size:.1f}" for name, size in zip(names, off, strict=True) if abs(size) > MAX_TREND_SIGMA]
-    if not far:
-        return []
-    return [
-        f"The current contradicts the drives of this set: {listed(far)} standard deviations from theirs. The interval does not "
-        "count; check load, friction and torque constant first"
-    ]
-
-
-def _contradictions_of_fit(estimate: MisalignmentEstimate) -> list[str]:
-    if estimate.misfit < MAX_MISFIT:
-        return []
-    return [
-        "The orders 1 to 4 do not have the ratios of a misalignment: the mean square of their residual is "
-        f"{estimate.misfit:.3g} times that of noise and model. Errors of teeth, a ripple of friction or of the motor, or an e2 "
-        "in addition to m explain such orders"
-    ]
+    contradictions = []
+    if far:
+        contradictions.append(
+            f"The current contradicts the drives of this set: {listed(far)} standard deviations from theirs. The interval does "
+            "not count; check load, friction and torque constant first"
+        )
+    if not misfit < MAX_MISFIT:
+        contradictions.append(
+            "The orders 1 to 4 do not have the ratios of a misalignment: the mean square of their residual is "
+            f"{misfit:.3g} times that of noise and model. Errors of teeth, a ripple of friction or of the motor, or an e2 "
+            "in addition to m explain such orders"
+        )
+    return tuple(contradictions)

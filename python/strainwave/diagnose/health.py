@@ -14,7 +14,7 @@ from strainwave.diagnose.baseline import BaselineComparison
 from strainwave.diagnose.detection import CONFIDENCE_LEVEL
 from strainwave.files.gear_set import GearSet
 from strainwave.presentation import Presented
-from strainwave.statistics.student import student
+from strainwave.statistics.scale import student
 
 Array = NDArray[np.float64]
 
@@ -126,15 +126,9 @@ def catalogue_life(gear_set: GearSet, *, average_torque: float, average_speed: f
     series = gear_set.name.lower().partition("-")[0]
     l10 = LIFE_L10.get(series, OTHER_LIFE_L10) * (rated / torque) ** 3 * (RATED_SPEED / speed)
     scale = l10 / log(1.0 / 0.9) ** (1.0 / WEIBULL_SLOPE)
-    remaining = tuple(_conditional(scale, hours, share) for share in LIFE_QUANTILES)
-    return CatalogueLife(l10, hours, (remaining[0], remaining[1], remaining[2]), torque, speed, rated)
-
-
-def _conditional(scale: float, hours: float, failed: float) -> float:
-    """Return the hours until a share of the gears that work after `hours` has failed, of a Weibull distribution."""
-    used = (hours / scale) ** WEIBULL_SLOPE
-    left: float = scale * (used - log(1.0 - failed)) ** (1.0 / WEIBULL_SLOPE) - hours
-    return left
+    used = (hours / scale) ** WEIBULL_SLOPE  # of a Weibull distribution; below the gears that work after these hours count
+    low, middle, high = (scale * (used - log(1.0 - failed)) ** (1.0 / WEIBULL_SLOPE) - hours for failed in LIFE_QUANTILES)
+    return CatalogueLife(l10, hours, (low, middle, high), torque, speed, rated)
 
 
 def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float) -> HealthTrend:

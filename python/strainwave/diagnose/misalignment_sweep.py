@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.actuator_ramp import CHANNELS, ERROR, LOOPS, OUTPUT, ActuatorRamp
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, LOOPS, OUTPUT, RAMP_CHANNELS, ActuatorRamp
 from strainwave.diagnose.inversion import M_PER_MICRON
 from strainwave.files.recording import Recording
 from strainwave.orders.order_spectrum import order_amplitudes
@@ -34,7 +34,7 @@ SWEEPS: dict[str, tuple[str, tuple[float, ...], dict[str, float]]] = {
 BOTH_LOOPS = ("e1", "beta")  # sweeps that are run with the loop on the motor encoder, too
 SEEN_ORDERS = (1.0, 2.0, 4.0)
 LOBES = {"single": "one lobe carries", "mean": "both lobes share", "max": "the outer lobe carries"}  # by `combine` of the law
-HEAD = ("error [′]", "torque [N·m]", "peak [1]", "current [mA]", "peak [1]", "output [′]")
+TABLE_HEAD = ("error [′]", "torque [N·m]", "peak [1]", "current [mA]", "peak [1]", "output [′]")
 MIN_TABLE_VALUE = 1e-3  # in the units of the table: nobody would measure less
 
 
@@ -68,21 +68,17 @@ class SweepLevels(Presented):
         return self.table[name][self.rows[sweep]]
 
     def cells(self, sweep: str) -> list[list[str]]:
-        """Return a line for each level of the sweep "e1" or "beta": the level, and what it does in the units of `HEAD`."""
+        """Return a line for each level of the sweep "e1" or "beta": the level, and its effects in the units of `TABLE_HEAD`."""
         lines = []
         for place, level in enumerate(self.column(sweep, SWEEPS[sweep][0])):
             value = {name: float(self.column(sweep, name)[place]) for name in self.table.names}
-            lines.append(
-                [
-                    f"e₁ = {number(level / M_PER_MICRON, 3)} µm" if sweep == "e1" else f"β₂ = {number(np.degrees(level), 2)}°",
-                    table_number(ARCMIN_PER_RADIAN * value["error_swing"], 3),
-                    table_number(value["torque_swing"], 3),
-                    fixed(value["torque_peak"], 3),
-                    table_number(1e3 * value["current_swing"], 3),
-                    fixed(value["current_peak"], 3),
-                    table_number(ARCMIN_PER_RADIAN * value["output_swing"], 2),
-                ]
-            )
+            lines.append([
+                f"e₁ = {number(level / M_PER_MICRON, 3)} µm" if sweep == "e1" else f"β₂ = {number(np.degrees(level), 2)}°",
+                table_number(ARCMIN_PER_RADIAN * value["error_swing"], 3),
+                table_number(value["torque_swing"], 3), fixed(value["torque_peak"], 3),
+                table_number(1e3 * value["current_swing"], 3), fixed(value["current_peak"], 3),
+                table_number(ARCMIN_PER_RADIAN * value["output_swing"], 2),
+            ])  # fmt: skip
         return lines
 
 
@@ -106,21 +102,15 @@ def sweep_misalignment(ramp: ActuatorRamp, law: Any) -> SweepLevels:
     2.0
     """
     changes, rows = _members(SWEEPS if ramp.loop == OUTPUT else BOTH_LOOPS)
-    runs = (
-        ramp.without_noise()
-        .with_error(law)
-        .many(
-            [{f"{ERROR}.{name}": value for name, value in change.items()} for change in changes],
-            record=[*CHANNELS, "kinematic_error"],
-        )
-    )
-    found = [_effect(ramp, runs, place) for place in range(len(changes))]
+    members = [{f"{ERROR_PATH}.{name}": value for name, value in change.items()} for change in changes]
+    runs = ramp.without_noise().with_error(law).many(members, record=[*RAMP_CHANNELS, "kinematic_error"])
+    effects = [_effect(ramp, runs, place) for place in range(len(changes))]
     names = dict.fromkeys(name for change in changes for name in change)
-    units = {each["name"]: each["unit"] for each in law.fields}
     columns = {name: [change.get(name, getattr(law, name)) for change in changes] for name in names}
-    columns |= {name: [row[name] for row in found] for name in found[0]}
-    known = {name: units[name] for name in names} | {name: _unit(name) for name in found[0]}
-    return SweepLevels(law.combine, ramp.loop, Recording(columns, known), rows)
+    columns |= {name: [effect[name] for effect in effects] for name in effects[0]}
+    units = {field["name"]: field["unit"] for field in law.fields if field["name"] in names}
+    units |= {name: _unit(name) for name in effects[0]}
+    return SweepLevels(law.combine, ramp.loop, Recording(columns, units), rows)
 
 
 def _members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, slice]]:
@@ -137,18 +127,18 @@ def _members(sweeps: Iterable[str]) -> tuple[list[dict[str, float]], dict[str, s
 def _effect(ramp: ActuatorRamp, runs: Ensemble, place: int) -> dict[str, float]:
     """Return the differences of a run from the straight one; names as the columns of `SweepLevels.table`."""
     straight, run = (ramp.settled(runs.member(each)) for each in (0, place))
-    found = {"error_swing": swing(run["kinematic_error"])}
+    effect = {"error_swing": swing(run["kinematic_error"])}
     columns = {"input_angle": run["input_angle"], "error": run["kinematic_error"]}
     for name, column in (("torque", "torque"), ("current", "current"), ("output", "output_angle")):
         columns[name] = run[column] - straight[column]
-        found[f"{name}_swing"] = swing(columns[name])
+        effect[f"{name}_swing"] = swing(columns[name])
     for name in ("torque", "current"):
-        found[f"{name}_peak"] = float(np.abs(run[name]).max() / np.abs(straight[name]).max())
+        effect[f"{name}_peak"] = float(np.abs(run[name]).max() / np.abs(straight[name]).max())
     turning = Recording(columns, {name: "rad" if name == "input_angle" else _unit(name) for name in columns})
     for name in list(columns)[1:]:
         there = order_amplitudes(turning, name, SEEN_ORDERS)
-        found |= {f"{name}_{order:g}": float(size) for order, size in zip(SEEN_ORDERS, there.amplitude, strict=True)}
-    return found
+        effect |= {f"{name}_{order:g}": float(size) for order, size in zip(SEEN_ORDERS, there.amplitude, strict=True)}
+    return effect
 
 
 def swing(values: Array) -> float:
@@ -184,7 +174,7 @@ def level_lines(found: Sequence[SweepLevels], sweep: str = "e1") -> list[str]:
     >>> print(level_lines([sweep_misalignment(ramp, law.replace(combine="single"))])[2].partition(" carries")[0])
     e₁ = 20 µm, one lobe
     """
-    rows = [[f"loop on the {LOOPS[found[0].loop]}", *HEAD]]
+    rows = [[f"loop on the {LOOPS[found[0].loop]}", *TABLE_HEAD]]
     for levels in found:
         rows += [[f"{level}, {LOBES[levels.combine]}", *cells] for level, *cells in levels.cells(sweep)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

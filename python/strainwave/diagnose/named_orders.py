@@ -13,13 +13,13 @@ from strainwave.messages import listed
 from strainwave.spline_orders import WAVE_ORDER, gear_facts, spline_orders, turning_spline_order
 
 MAX_HARMONIC = 12  # of an order, up to which a cause is named
-MULTIPLES = {3.0: "third harmonic", 4.0: "fourth harmonic"}  # of a crack; the lower ones need long blocks to be separated
-DAMAGE = {
+CRACK_MULTIPLES = {3.0: "third harmonic", 4.0: "fourth harmonic"}  # of a crack; the lower ones need long blocks to be separated
+SPLINE_DAMAGE = {
     "flexspline": "a crack of the flexspline or its damaged teeth",
     "circular spline": "damaged teeth of the circular spline",
 }
 AGAINST_OTHER = "wave generator against the other spline"
-ELEMENTS = {"outer_ring": "outer ring", "inner_ring": "inner ring", "ball": "ball", "cage": "cage"}
+BEARING_ELEMENTS = {"outer_ring": "outer ring", "inner_ring": "inner ring", "ball": "ball", "cage": "cage"}
 
 
 @dataclass(frozen=True)
@@ -43,15 +43,7 @@ class NamedOrder:
 
 
 def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]:
-    """Return the orders per revolution of the input of damaged elements of bearings, by their names.
-
-    Args:
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
-        kinematics: of the gear, whose teeth and fixed spline determine the speed of the outer ring
-
-    Raises:
-        ValueError: the gear has no teeth
-    """
+    """Return the orders per revolution of the input of damaged elements of bearings, by their names."""
     if not bearings:
         return {}
     facts = gear_facts(kinematics)
@@ -60,7 +52,7 @@ def bearing_orders(bearings: Sequence[Any], kinematics: Any) -> dict[str, float]
     orders = {}
     for number, bearing in enumerate(bearings, 1):
         place = "bearing" if len(bearings) == 1 else f"bearing {number}"
-        for element, name in ELEMENTS.items():
+        for element, name in BEARING_ELEMENTS.items():
             (wave,) = bearing.replace(element=element, waves=1, friction_depth=1.0, stiffness_depth=0.0).changes(facts)
             orders[f"{place}, {name}"] = float(wave[-1])
     return orders
@@ -71,11 +63,7 @@ def named_orders(
 ) -> tuple[NamedOrder, ...]:
     """Return the orders that a strain wave gear may have over the angle of a shaft; empty if its ratio is not known.
 
-    Args:
-        run: the recording
-        kinematics: of the gear; None if it is not known
-        further: orders per revolution of the input
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
+    Further orders are per revolution of the input; of bearings (`sw.fault.WaveGeneratorBearing`) the geometry counts.
     """
     if not np.isfinite(run.per_input):
         return ()
@@ -92,7 +80,7 @@ def named_orders(
     multiples = {
         f"{name}, {harmonic}": times * order
         for name, order in (cracked | against).items()
-        for times, harmonic in MULTIPLES.items()
+        for times, harmonic in CRACK_MULTIPLES.items()
     }
     others = [*(("as asked", order) for order in further), *bearing_orders(bearings, kinematics).items()]
     return (
@@ -113,11 +101,8 @@ def causes(
 ) -> tuple[str, ...]:
     """Return what orders of a shaft repeat with in a strain wave gear, a sentence for each cause.
 
-    Args:
-        orders: per revolution of the shaft, each with the resolution with which it was found
-        per_input: revolutions of the input per revolution of the shaft; nan if it is not known
-        kinematics: of the gear, whose teeth separate the splines; None if it is not known
-        bearings: `sw.fault.WaveGeneratorBearing`, whose geometry counts
+    Each order per revolution of the shaft has the resolution with which it was found. `per_input` is the number of revolutions
+    of the input per revolution of the shaft, nan if it is not known.
     """
     if not np.isfinite(per_input):
         return ()
@@ -134,9 +119,9 @@ def causes(
         if whole and other:
             cause = "of either spline, which this record does not separate: turn the output further"
         elif other:
-            cause = f"passes of the wave generator over one place of the {turning}: {DAMAGE[turning]}"
+            cause = f"passes of the wave generator over one place of the {turning}: {SPLINE_DAMAGE[turning]}"
         elif whole:
-            damage = DAMAGE.get(still, "damage of the spline that does not turn")
+            damage = SPLINE_DAMAGE.get(still, "damage of the spline that does not turn")
             cause = f"whole multiples: misalignment or wear of the wave generator, {damage}"
         elif not splines:
             cause = "no whole multiples: the spline that turns, a bearing, the motor, or a resonance; give a gear with teeth"

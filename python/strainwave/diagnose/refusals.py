@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
-from strainwave.orders.comb import RATIOS
-from strainwave.orders.measured import ANGLES, SPEEDS, with_angle
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
+from strainwave.orders.measured import ANGLE_COLUMNS, SPEED_COLUMNS, with_angle
 from strainwave.orders.shaft_pair import Pair, ratio_of
 from strainwave.orders.torque_ripple import MAX_PHASE_STEP, Side
 from strainwave.orders.turning import evenly_turning
@@ -21,7 +21,12 @@ from strainwave.spline_orders import WAVE_ORDER
 
 Array = NDArray[np.float64]
 
-EFFORTS = ("current", "input_torque", "torque", "joint_torque")  # in which lines are looked for: what the motor measures first
+DIAGNOSED_COLUMNS = (
+    "current",
+    "input_torque",
+    "torque",
+    "joint_torque",
+)  # in which lines are looked for: what the motor measures first
 MIN_INPUT_REVOLUTIONS = 3.0  # revolutions of the input from end to end
 MIN_TRAVEL = 1e-3  # rad of the shaft: less is noise of an encoder at rest
 SLOW_SHARE = 0.05  # of the largest speed: slower samples count as rest
@@ -77,8 +82,7 @@ def usable(
     """Return a recording as a diagnosis uses it.
 
     Args:
-        recording: columns with the names of a drive log
-        name: of the recording, for messages
+        recording, name: columns with the names of a drive log, and the name for messages
         ratio: of the gear, if it is known; the sign does not matter
         side: on which the angle or speed was measured, if its name does not contain it
         rate: samples per second of a recording without time [Hz]
@@ -95,20 +99,20 @@ def usable(
     ValueError: rest.csv: at rest: output_angle moves by 0 rad from end to end; at least 0.001 rad is needed; record a motion
     """
     size = None if ratio is None else abs(ratio)
-    effort = next((each for each in EFFORTS if each in recording), None)
+    effort = next((each for each in DIAGNOSED_COLUMNS if each in recording), None)
     if effort is None:
         raise ValueError(
             f"{name}: without current or torque: its columns are {listed(recording.names)}; a diagnosis needs one of "
-            f"{listed(EFFORTS)}; record it"
+            f"{listed(DIAGNOSED_COLUMNS)}; record it"
         )
-    if not any(each in recording for each, _ in (*ANGLES, *SPEEDS)):
+    if not any(each in recording for each, _ in (*ANGLE_COLUMNS, *SPEED_COLUMNS)):
         raise ValueError(
             f"{name}: without an angle or a speed: its columns are {listed(recording.names)}; a diagnosis needs one of "
-            f"{listed(each for each, _ in (*ANGLES, *SPEEDS))}; record it"
+            f"{listed(each for each, _ in (*ANGLE_COLUMNS, *SPEED_COLUMNS))}; record it"
         )
     try:
-        turning, angle, known, remarks = with_angle(recording, side, rate)
-        run = JointRecording(name, turning, effort, angle, known, size, dict(other_angles or {}), rate, remarks)
+        turning, angle, side_of_angle, remarks = with_angle(recording, side, rate)
+        run = JointRecording(name, turning, effort, angle, side_of_angle, size, dict(other_angles or {}), rate, remarks)
         run = _with_shaft_of_input(run) if "input_angle" in recording and "output_angle" in recording else run
         _check_motion(run)
     except QuestionError as question:
@@ -122,9 +126,6 @@ def _with_shaft_of_input(run: JointRecording) -> JointRecording:
     """Return a run with both angles over the input itself, whose angle a controller may have divided by the ratio.
 
     Without a ratio it is then a run over the output.
-
-    Raises:
-        ValueError: the angles have another ratio than the one given
     """
     names = ("input_angle", "output_angle")
     record = evenly_turning(run.recording, names, [], run.rate)
@@ -154,7 +155,7 @@ def _check_motion(run: JointRecording) -> None:
         )
     record = evenly_turning(run.recording, [run.angle], [], run.rate)
     angle = record.columns[run.angle]
-    least_ratio = float(RATIOS[0])
+    least_ratio = float(STRAIN_WAVE_RATIOS[0])
     per_input = run.per_input if np.isfinite(run.per_input) else least_ratio
     assumed = "" if np.isfinite(run.per_input) else f", with the smallest ratio that makers offer, {least_ratio:g}"
     turned = float(np.ptp(angle)) / tau * per_input

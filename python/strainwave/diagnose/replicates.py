@@ -13,13 +13,12 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.diagnose.motion import MAX_SAMPLES
 from strainwave.diagnose.refusals import JointRecording
+from strainwave.diagnose.regression import MAX_SAMPLES
 from strainwave.orders.smooth_part import Moving, floor_without, shaft_of
 from strainwave.orders.torque_ripple import Ripple
-from strainwave.statistics.floor import Floor
-from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, normal_inverse, order_waves, solved
+from strainwave.statistics.spectrum import Floor
 
 Array = NDArray[np.float64]
 
@@ -28,7 +27,7 @@ TREND_HARMONICS = 2  # of this period, in the load
 LOAD_RIDGE = 1e-3  # of the squared weight [1]
 MIN_CELL_SHARE = 0.05  # of the squared weight of a block: a direction or a load with less has no amplitude
 MIN_CELL_PERIODS = 3.0  # periods of an order in a cell
-SENSES = (("forward", 1.0), ("backward", -1.0))
+BOTH_DIRECTIONS = (("forward", 1.0), ("backward", -1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +85,7 @@ class Cell:
 
 
 def joint_motion(run: JointRecording) -> JointMotion:
-    """Return a run with friction over speed, inertia and gravity taken out of its torque or current.
-
-    Raises:
-        ValueError: its samples are too few or too uneven
-    """
+    """Return a run with friction over speed, inertia and gravity taken out of its torque or current."""
     record, shaft = shaft_of(
         run.recording, run.column, run.angle, others=run.others, rate=run.rate, per_input=run.per_input, count=MAX_SAMPLES
     )
@@ -108,8 +103,7 @@ def _without_gravity(shaft: Moving) -> Moving:
     kept = [column for column in shaft.basis.T if not any(np.array_equal(column, wave) for wave in waves)]
     basis = np.stack(kept, axis=1)
     whole = shaft.series + shaft.smooth
-    found = solved(basis * shaft.weight[:, None], whole * shaft.weight)
-    smooth = basis @ found
+    smooth = basis @ solved(basis * shaft.weight[:, None], whole * shaft.weight)
     return replace(shaft, series=whole - smooth, smooth=smooth, basis=basis)
 
 
@@ -127,9 +121,9 @@ def _load(shaft: Moving, series: Array) -> Array:
     others.append(own.acceleration / max(float(np.abs(own.acceleration).max()), 1e-300))
     columns = np.stack([*trend, *others], axis=1) * weight[:, None]
     squares = columns.T @ columns
-    found = np.linalg.solve(squares + LOAD_RIDGE * float(weight @ weight) * np.eye(len(squares)), columns.T @ (series * weight))
-    load: Array = np.stack(trend, axis=1) @ found[: len(trend)]
-    return load
+    ridge = LOAD_RIDGE * float(weight @ weight) * np.eye(len(squares))
+    coefficients = np.linalg.solve(squares + ridge, columns.T @ (series * weight))
+    return np.asarray(np.stack(trend, axis=1) @ coefficients[: len(trend)])
 
 
 def blocks_of(motion: JointMotion, travel: float) -> NDArray[np.int_]:
@@ -139,8 +133,7 @@ def blocks_of(motion: JointMotion, travel: float) -> NDArray[np.int_]:
     """
     path = np.cumsum(np.abs(motion.shaft.own.speed) * (motion.shaft.weight > 0.5))
     count = max(int(path[-1] / travel + 1e-9), 1)
-    block: NDArray[np.int_] = np.minimum((path / max(path[-1] / count, 1e-300)).astype(int), count - 1)
-    return block
+    return np.asarray(np.minimum((path / max(path[-1] / count, 1e-300)).astype(int), count - 1))
 
 
 def cells_of(
@@ -149,37 +142,22 @@ def cells_of(
     """Return the amplitude of each order in each part of each block, by least squares over all of them together.
 
     Series and waves are whitened over the whole recording before they are cut, so that noise at low frequencies does not leak
-    into short blocks.
-
-    Args:
-        motion: the recording
-        orders: per revolution of the shaft
-        block: number of the block of each sample, shape (n,)
-        parts: samples of each part of a block; by default both directions
-
-    Returns:
-        cells by block, part and order; None for one with too little motion
+    into short blocks. Parts of a block are both directions if not given.
     """
     shaft = motion.shaft
-    masks = [shaft.own.sense == sign for _, sign in SENSES] if parts is None else list(parts)
+    masks = [shaft.own.sense == sign for _, sign in BOTH_DIRECTIONS] if parts is None else list(parts)
     waves = order_waves(shaft.own.angle, orders) * shaft.weight[:, None]
-    weighted = _without_smooth(shaft, np.concatenate([waves * mask[:, None] for mask in masks], axis=1))
+    basis = shaft.basis * shaft.weight[:, None]
+    weighted = np.concatenate([waves * mask[:, None] for mask in masks], axis=1)
+    # Without what the fit of the smooth part takes of them (Frisch and Waugh): over few revolutions friction over speed
+    # follows a slow order near reversals, which would make its amplitude too small.
+    weighted = np.asarray(weighted - basis @ solved(basis, weighted))
     series = shaft.series * shaft.weight
-    both = np.concatenate([shaft.basis * shaft.weight[:, None], weighted], axis=1)
+    both = np.concatenate([basis, weighted], axis=1)
     floor = floor_without(both, series, shaft.weight)  # waves would raise it where the speed varies
     white, columns = floor.whitened(series), floor.whitened(weighted)
     count = int(block.max(initial=-1)) + 1
     return [_block_cells(motion, orders, masks, block == number, columns, white, floor) for number in range(count)]
-
-
-def _without_smooth(shaft: Moving, waves: Array) -> Array:
-    """Return weighted waves without what the fit of the smooth part takes of them, shape (n, k) (Frisch and Waugh).
-
-    Over few revolutions friction over speed follows a slow order near reversals, which would make its amplitude too small.
-    """
-    basis = shaft.basis * shaft.weight[:, None]
-    left: Array = waves - basis @ solved(basis, waves)
-    return left
 
 
 def _block_cells(

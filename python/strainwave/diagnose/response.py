@@ -11,7 +11,7 @@ import numpy as np
 
 from strainwave import Drive, loads
 from strainwave.diagnose.replicates import JointMotion
-from strainwave.diagnose.steady_run import COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.diagnose.smallest_error import CURRENT_COLUMN, MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed
 
@@ -42,12 +42,7 @@ def error_response(
     By virtual work an error of amplitude A and order n turns a load T into n T A at the motor. This leaves out the inertia of
     the output and the loop of the controller, so it is right at low speed under load. A motion of one direction does not
     separate the load from friction. The model then takes the friction of the file and a spread; virtual work has no response.
-
-    Args:
-        motion: of the recording
-        orders: per revolution of the input
-        gear_set: of the joint; the model needs its motor, load and controller
-        ratio: size of the ratio
+    Orders are per revolution of the input. The model needs motor, load and controller of the set.
     """
     if ratio is None or not orders:
         return ErrorResponse({}, "")
@@ -66,7 +61,7 @@ def error_response(
 
 def _missing(motion: JointMotion, gear_set: GearSet | None) -> str:
     """Return what the model of the drive lacks; empty if it lacks nothing."""
-    if motion.run.column != COLUMN:
+    if motion.run.column != CURRENT_COLUMN:
         return f"{motion.run.column.replace('_', ' ')} is no current of a motor"
     if not motion.timed:
         return "the speed is not known without time"
@@ -89,7 +84,7 @@ def _by_model(motion: JointMotion, orders: Sequence[float], whole: Drive) -> Err
     per_torque = float(motor.torque_constant) * abs(float(drive.gear.kinematics.ratio))  # N.m/A
     torque = per_torque * motion.load
     if not motion.shaft.own.reverses():  # one direction does not separate load and friction, which the model has
-        friction = _friction_current(_steady(drive, speed, 0.0, orders))
+        friction = abs(float(np.mean(_steady(drive, speed, 0.0, orders).with_error(0.0)[CURRENT_COLUMN])))  # A
         torque = per_torque * max(motion.load - (1.0 + FRICTION_SPREAD) * friction, 0.0)
     run = _steady(drive, speed, torque, orders)
     healthy = run.with_error(0.0)
@@ -115,8 +110,3 @@ def _steady(drive: Drive, speed: float, load_torque: float, orders: Sequence[flo
     if duration > MAX_MODEL_DURATION:
         raise ValueError(f"order {lowest:g} takes {duration:.3g} s in the model at {speed:.3g} rad/s")
     return SteadyRun.of(drive, speed, load_torque, duration, SAMPLES_PER_PERIOD * max(highest, 1.0) * speed / tau, lowest)
-
-
-def _friction_current(run: SteadyRun) -> float:
-    """Return the size of the mean current without load [A]."""
-    return abs(float(np.mean(run.with_error(0.0)[COLUMN])))

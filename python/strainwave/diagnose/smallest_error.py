@@ -11,19 +11,168 @@ that the test of `order_lines` detects follows from the non-central F distributi
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import hypot, inf
+from math import hypot, inf, pi, sqrt, tau
 
-from strainwave import Drive, arguments, typeset
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import Drive, arguments, kinematic_error, typeset
+from strainwave.diagnose.actuator_ramp import ERROR_PATH, longest_step, noises
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM, needed_signal_to_noise
-from strainwave.diagnose.steady_run import MAX_CATALOGUE_AMPLITUDE, RecordedOrder, SteadyRun
+from strainwave.diagnose.regression import MAX_SAMPLES, OrderRegression, motion_of, regressions
+from strainwave.files.recording import Recording
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
+from strainwave.messages import listed
 from strainwave.presentation import Presented
+from strainwave.simulation.run import simulate
+from strainwave.simulation.scenario import constant, ramp
+from strainwave.simulation.signals import outputs
 
-PROBE = RAD_PER_ARCMIN  # rad: error of the first run; later ones have the limit itself
+Array = NDArray[np.float64]
+
+FIRST_PROBE = RAD_PER_ARCMIN  # rad: error of the first run; later ones have the limit itself
 PROBE_RUNS = 3  # runs with an error at most
 MIN_PROBE_CHANGE = 1e-3  # relative change of the error [1], below which a further run would show the same gain
 MAX_PROBE = 60.0 * RAD_PER_ARCMIN  # rad: error of any run
 MIN_PROBE = 1e-3 * RAD_PER_ARCMIN  # rad
+MAX_CATALOGUE_AMPLITUDE = RAD_PER_ARCMIN  # rad: half of 2 arcmin peak to peak, the bound of the least accurate catalogue gears
+RUN_IN_TURNS = 2.0  # revolutions of the input before the record
+MIN_RUN_IN = 1.0  # s
+MAX_DURATION = 3600.0  # s, of the record
+MIN_TURNS = 3.0  # of the input, in the record
+MIN_SPEED_SHARE = 0.9  # of the speed asked for [1], that a drive must reach
+CURRENT_COLUMN = "current"
+
+
+@dataclass(frozen=True)
+class SteadyRun:
+    """Motion at one speed under one load.
+
+    Attributes:
+        drive: with noise-free sensors, its own kinematic error replaced
+        speed: of the input [rad/s], as a size
+        load_torque: at the output [N.m]
+        duration: of the record, after the run-in [s]
+        sample_rate: of the current [Hz]
+        order: of the error, periods per revolution of the input [1]
+    """
+
+    drive: Drive
+    speed: float
+    load_torque: float
+    duration: float
+    sample_rate: float
+    order: float
+
+    @classmethod
+    def of(cls, drive: Drive, speed: float, load_torque: float, duration: float, sample_rate: float, order: float) -> SteadyRun:
+        """Return the run, with noise-free sensors."""
+        speed = arguments.number("speed", speed, "rad/s", low=0.0)
+        load_torque = arguments.number("load_torque", load_torque, "N.m")
+        duration = arguments.number("duration", duration, "s", "(]", 0.0, MAX_DURATION)
+        sample_rate = arguments.number("sample_rate", sample_rate, "Hz", "(]", 0.0, MAX_SAMPLES / duration)
+        order = arguments.number("order", order, low=0.0)
+        if (turns := speed * duration / tau) * min(order, 1.0) < MIN_TURNS:
+            needed = MIN_TURNS / min(order, 1.0) * tau / speed
+            raise ValueError(
+                f"duration = {duration:g} s is {turns:.3g} revolutions of the input; order {order:g} needs "
+                f"{needed:.4g} s at this speed"
+            )
+        if order * speed / pi > 0.4 * sample_rate:
+            raise ValueError(
+                f"sample_rate = {sample_rate:g} Hz has less than 5 samples in a period of order {order:g}; take "
+                f"{2.5 * order * speed / pi:.4g} Hz or more"
+            )
+        if CURRENT_COLUMN not in (known := outputs(drive)):
+            raise ValueError(
+                f"the drive records no current, only {listed(known)}; give it a motor that has one, as DC or CurrentSource"
+            )
+        quiet = drive.replace(dict.fromkeys(noises(drive, "amplitude"), 0.0))
+        return cls(quiet, speed, load_torque, duration, sample_rate, order)
+
+    @property
+    def run_in(self) -> float:
+        """Time before the record, whole samples [s]."""
+        wanted = max(MIN_RUN_IN, RUN_IN_TURNS * tau / self.speed)
+        return float(np.ceil(wanted * self.sample_rate)) / self.sample_rate
+
+    def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
+        """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad]."""
+        law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
+        drive = self.drive.replace({ERROR_PATH: law})
+        ratio = float(drive.gear.kinematics.ratio)
+        output = self.speed / abs(ratio)
+        length = self.run_in + self.duration
+        start = {"output_speed": output, "input_speed": output * ratio}
+        is_speed_loop = getattr(self.drive.control, "law", self.drive.control).name == "pi"
+        run = simulate(
+            drive,
+            constant(output, length) if is_speed_loop else ramp(output, length),
+            min(longest_step(drive), 1.0 / self.sample_rate),
+            sample=1.0 / self.sample_rate,
+            load_torque=self.load_torque,
+            initial=start,
+            record=["input_angle", "output_angle", CURRENT_COLUMN],
+        )
+        record = run.between(self.run_in, length)
+        angle, wanted = record["input_angle"], self.speed * self.duration
+        turned = float(angle[-1] - angle[0]) * float(np.sign(ratio))
+        if not MIN_SPEED_SHARE * wanted <= turned <= wanted / MIN_SPEED_SHARE:
+            raise ValueError(
+                f"the drive turns its input by {turned:.4g} rad in {self.duration:g} s, loaded with {self.load_torque:g} N.m; "
+                f"speed = {self.speed:g} rad/s makes {wanted:.4g} rad. Take a lower speed or load, or a drive with a controller"
+            )
+        return record
+
+    def gain(self, healthy: RecordedOrder, amplitude: float) -> complex:
+        """Return amplitude and phase of the current per error at an amplitude of the error at the output [rad] [A/rad].
+
+        Hysteresis and friction answer a small error otherwise than a large one.
+        """
+        return (RecordedOrder.of(self.with_error(amplitude), self.order).wave - healthy.wave) / amplitude
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedOrder:
+    """Regression of an order on the motion of a record, with the current of the record.
+
+    Attributes:
+        regression: of the order
+        series: current in averaged rows [A], shape (n,)
+        every: samples averaged in one row
+        revolutions: of the input in the rows
+    """
+
+    regression: OrderRegression
+    series: Array
+    every: int
+    revolutions: float
+
+    @classmethod
+    def of(cls, record: Recording, order: float) -> RecordedOrder:
+        """Return the regression of an order on a record."""
+        motion = motion_of(record, CURRENT_COLUMN, order)
+        return cls(regressions(motion, [order])[0], motion.series, motion.every, motion.revolutions)
+
+    @property
+    def samples(self) -> int:
+        """M, samples of the record that are used."""
+        return len(self.series) * self.every
+
+    @property
+    def wave(self) -> complex:
+        """Amplitude times exp(j phase) of the order [A], as of a sine."""
+        sine, cosine = (self.regression.mean_estimator @ self.series).tolist()
+        return complex(sine, cosine)
+
+    @property
+    def own_noise(self) -> float:
+        """Standard deviation of a sample of white noise with the level that the current itself has around the order [A]."""
+        return sqrt(self.every * float(self.regression.variance(self.series[:, None])[0]))
+
+    def sigma(self, noise: float) -> float:
+        """Return the standard deviation of an amplitude [A] under white noise of a sample [A]."""
+        return noise * sqrt(0.5 * float(np.trace(self.regression.mean_factor)) / self.every)
 
 
 @dataclass(frozen=True)
@@ -149,14 +298,14 @@ def detection_limit(
     healthy = RecordedOrder.of(run.with_error(0.0), order)
     sigma = healthy.sigma(hypot(noise, healthy.own_noise))
     needed = needed_signal_to_noise(probability, false_alarm, healthy.regression.freedom, tests)
-    gain, limit, before = 0.0j, PROBE, inf
+    gain, limit, before = 0.0j, FIRST_PROBE, inf
     for _ in range(PROBE_RUNS):
         probe = min(max(limit, MIN_PROBE), MAX_PROBE)
         if abs(probe - before) < MIN_PROBE_CHANGE * probe:
             break
         before, gain = probe, run.gain(healthy, probe)
         limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
-    found = DetectionLimit(
+    detected = DetectionLimit(
         order=order,
         amplitude=limit,
         current=sigma * needed,
@@ -171,21 +320,21 @@ def detection_limit(
         accuracy=accuracy,
         offset=abs(healthy.wave),
     )
-    return replace(found, remarks=_remarks(found, noise, healthy.own_noise))
+    return replace(detected, remarks=_remarks(detected, noise, healthy.own_noise))
 
 
-def _remarks(found: DetectionLimit, noise: float, own: float) -> tuple[str, ...]:
+def _remarks(limit: DetectionLimit, noise: float, own: float) -> tuple[str, ...]:
     remarks = []
-    if found.insensitive:
+    if limit.insensitive:
         remarks.append(
-            f"insensitive: an error of {found.accuracy / RAD_PER_ARCMIN:.3g} arcmin, which this gear may have, makes "
-            f"{1e3 * abs(found.gain) * found.accuracy:.3g} mA, and {1e3 * found.current:.3g} mA are needed. No alarm means "
+            f"insensitive: an error of {limit.accuracy / RAD_PER_ARCMIN:.3g} arcmin, which this gear may have, makes "
+            f"{1e3 * abs(limit.gain) * limit.accuracy:.3g} mA, and {1e3 * limit.current:.3g} mA are needed. No alarm means "
             "nothing: take more load, a longer record, or a sensor with less noise"
         )
     if own > noise:
         remarks.append(
             f"without any error the drive has {1e3 * own:.3g} mA around the order, more than the noise of {1e3 * noise:.3g} mA"
         )
-    if found.offset > found.current:
-        remarks.append(f"order {found.order:g} has {1e3 * found.offset:.3g} mA without any error; compare it with healthy runs")
+    if limit.offset > limit.current:
+        remarks.append(f"order {limit.order:g} has {1e3 * limit.offset:.3g} mA without any error; compare it with healthy runs")
     return tuple(remarks)

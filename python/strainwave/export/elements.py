@@ -23,8 +23,8 @@ from strainwave.questions import NUMBER, Answer, QuestionError
 from strainwave.simulation import scenario
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import simulate
+from strainwave.tuning.cascade import steady_torque
 from strainwave.tuning.loss import ExportLoss
-from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 

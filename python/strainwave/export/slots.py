@@ -25,11 +25,10 @@ from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.scenario import Scenario
 from strainwave.tuning import goals
 from strainwave.tuning.candidates import USUAL_SPEED
-from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, torque_constant
-from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MAX_MEMBERS, MEASUREMENTS, assumed_numbers
+from strainwave.tuning.cascade import FAST_SPEED, Plant, model_of, steady_torque, torque_constant
+from strainwave.tuning.compensate import CREEP_SPEED_SHARE, MAX_MEMBERS, MEASUREMENT_OF_EFFECT, assumed_numbers
 from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
-from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 
@@ -129,7 +128,7 @@ class Request:
                 consequence = (
                     "the slot may add as much as it takes away" if effect == "kinematic error" else "so is the loss of the slot"
                 )
-                yield f"{effect} is assumed ({assumed}), and {consequence}; {MEASUREMENTS[effect]}"
+                yield f"{effect} is assumed ({assumed}), and {consequence}; {MEASUREMENT_OF_EFFECT[effect]}"
         if self.unit == "A" and type(self.gear_set.motor) is motor.PMSM:
             yield "currents are amplitudes of the phases; the root mean square is smaller by the square root of 2"
 
@@ -286,7 +285,7 @@ class FullFriction:
         if not torque.any():
             raise ValueError(
                 f"{request.gear_set.name}: the gear has no friction, so the slot {request.name} has nothing to compensate; "
-                f"{MEASUREMENTS['friction']}"
+                f"{MEASUREMENT_OF_EFFECT['friction']}"
             )
         over = f"{low:.3g} to {top:.3g} rad/s of the {request.side} in both senses, over a turn of the output"
         over += f", under {request.load:g} N.m" if request.load else ""
@@ -424,7 +423,7 @@ def anticogging_map(request: Request) -> Exported:
     if not there.ripple.any():
         raise ValueError(
             f"{request.gear_set.name}: neither kinematic error nor friction of the gear varies with the angle at a load of "
-            f"{request.load:g} N.m, so the map is zero; {MEASUREMENTS['kinematic error']}"
+            f"{request.load:g} N.m, so the map is zero; {MEASUREMENT_OF_EFFECT['kinematic error']}"
         )
     values = mean_over_last(there.ripple)[::COMPARED_ANGLES_PER_POINT]
     applied = np.interp(fine, fine[::COMPARED_ANGLES_PER_POINT], values, period=2.0 * np.pi)[:, np.newaxis]

@@ -1,14 +1,17 @@
-"""Columns that are in memory already, as formats give them that are read at once."""
+"""Tables in memory: columns, grids in time, and the variables of formats that are read at once."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.labels import ColumnSource, Content, Label
+from strainwave.files.budget import ReadBudget, RefusedFile
+from strainwave.files.labels import ColumnSource, Content, Label, check_names, label_of
 from strainwave.files.units import measures
 from strainwave.messages import listed, one_line, quoted
 
@@ -142,3 +145,145 @@ def grid_table(
     names = [name for grid in grids for name in grid.columns]
     labels = [Label("time", "time", "s"), *(Label(name, name, units.get(name) or None) for name in names)]
     return GridTable(file, title, labels, grids, [one_line(each) for each in left_out])
+
+
+# ---- Variables -------------------------------------------------------------------------------------------------------
+
+
+MAX_MATRIX_COLUMNS = 100  # more columns are no channels
+MAX_NESTING = 6  # structures in structures: a bound for the work that a file from outside can cause
+IN_THE_NAME = "in the name, if at all, as `speed_rpm`"  # where the unit of a variable stands
+NUMBERS_OF_SCOPE = ".signals.values"  # as Simulink saves a scope, with a series of the time
+
+
+class Unreadable(NamedTuple):
+    """A variable of a file that only the program can read that wrote it."""
+
+    what: str
+
+
+def object_of_matlab(kind: str) -> Unreadable:
+    """Return the reason why an object of MATLAB is left out, as a table, a timetable, a timeseries or a Simulink data set."""
+    save = "save its numbers instead, as with s = struct('t', x.Time, 'q', x.Data), or write a .csv with writetable"
+    return Unreadable(f"an object of MATLAB ({kind}), which MATLAB alone reads: {save}")
+
+
+def table_of(file: str, variables: Iterable[tuple[str, Any]], budget: ReadBudget) -> ArrayTable:
+    """The series that are of the length most of them have.
+
+    A series is a variable, or a field of a structure, as `data.q`; a matrix holds several, `q_1`, `q_2` …, and one without a
+    name `column_1`, `column_2` … Arrays of structures that are alike are several runs: the longest is this table, and each is
+    one of its `runs`. Of such arrays within structures the longest run is taken. Series of another length are left out with a
+    remark.
+
+    Raises:
+        ValueError: there is no series of numbers, or the series take more than the budget allows
+    """
+    variables = list(variables)
+    counts = {name: len(value) for name, value in variables if _are_runs(value)}
+    if not counts:
+        return _table_of_one(file, variables, budget)
+    count = max(counts.values())
+    runs = [
+        _table_of_one(
+            f"{file}({number + 1})",
+            [(name, value[number] if counts.get(name) == count else value) for name, value in variables],
+            budget,
+        )
+        for number in range(count)
+    ]
+    longest = max(range(count), key=lambda number: len(runs[number].columns[0]))
+    first = next(name for name, number in counts.items() if number == count)
+    return replace(runs[longest], left_out=[*runs[longest].left_out, _taken(first, count, longest)], runs=runs)
+
+
+def _are_runs(value: Any) -> bool:
+    """True for several structures that are alike and contain series, as of several runs; signals of a scope are one run."""
+    if not isinstance(value, list) or len(value) < 2 or not all(isinstance(each, Mapping) for each in value):
+        return False
+    if len({tuple(each) for each in value}) > 1 or "values" in value[0]:
+        return False
+    return all(any(isinstance(part, np.ndarray) and part.size > 1 for part in each.values()) for each in value)
+
+
+def _table_of_one(file: str, variables: Iterable[tuple[str, Any]], budget: ReadBudget) -> ArrayTable:
+    """Return the table of one recording; see `table_of`."""
+    series: dict[str, Array] = {}
+    singles: dict[str, float] = {}
+    left_out: list[str] = []
+    try:
+        for name, value in variables:
+            for part, values in _series(name, value, left_out, budget):
+                if values.size == 1:
+                    singles[part] = float(values[0])
+                else:
+                    series[part] = values
+        check_names(series)
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{file}: {error}")) from None
+    if not series:
+        raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
+    length, _ = max(Counter(len(values) for values in series.values()).items(), key=lambda each: (each[1], each[0]))
+    kept = {name: values for name, values in series.items() if len(values) == length}
+    others = [f"{name} ({len(values)})" for name, values in series.items() if len(values) != length]
+    left_out += [f"of another length than {length}, and left out: {listed(others)}"] if others else []
+    return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)
+
+
+def _series(
+    name: str, value: Any, left_out: list[str], budget: ReadBudget, depth: int = MAX_NESTING
+) -> Iterator[tuple[str, Array]]:
+    """The series that a variable holds."""
+    budget.take_node()
+    budget.take_bytes(len(name), "the names of its variables")
+    if isinstance(value, Unreadable):
+        left_out.append(f"{name or 'its array'} is left out: {value.what}")
+    elif isinstance(value, Mapping):
+        for key, each in value.items() if depth else ():
+            yield from _series(f"{name}.{key}" if name else str(key), each, left_out, budget, depth - 1)
+    elif isinstance(value, list) or (isinstance(value, np.ndarray) and value.dtype == object):
+        if depth:
+            values = list(value.ravel()) if isinstance(value, np.ndarray) else value
+            yield from _several(name, values, left_out, budget, depth - 1)
+    else:
+        yield from _matrix(name.removesuffix(NUMBERS_OF_SCOPE), value, budget)
+
+
+def _several(
+    name: str, values: Sequence[Any], left_out: list[str], budget: ReadBudget, depth: int
+) -> Iterator[tuple[str, Array]]:
+    """The series in a list: of structures that are alike the longest, of signals each by its label, else each by its number."""
+    structures = [each for each in values if isinstance(each, Mapping)]
+    if len(structures) > 1 and len({tuple(each) for each in structures}) == 1 and "values" not in structures[0]:
+        read = [list(_series(name, each, [], budget, depth)) for each in structures]
+        longest = max(range(len(read)), key=lambda place: max((len(found) for _, found in read[place]), default=0))
+        left_out.append(_taken(name, len(read), longest))
+        yield from read[longest]
+        return
+    for number, each in enumerate(values, start=1):
+        if isinstance(each, Mapping) and "values" in each:
+            label = each.get("label")
+            yield from _matrix(label if isinstance(label, str) and label else f"{name}_{number}", each["values"], budget)
+        else:
+            yield from _series(name if len(values) == 1 else f"{name}_{number}", each, left_out, budget, depth)
+
+
+def _taken(name: str, count: int, place: int) -> str:
+    taken = f"of which number {place + 1} is taken, the first of the longest"
+    return f"{name} holds {count} recordings, {taken}; save each in a file of its own"
+
+
+def _matrix(name: str, value: Any, budget: ReadBudget) -> Iterator[tuple[str, Array]]:
+    """The series that an array of numbers holds."""
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiub" or array.ndim > 2 or array.size == 0:
+        return
+    if array.dtype != float:
+        budget.take_bytes(8 * array.size, "its numbers")
+    matrix = np.atleast_2d(array.astype(float, copy=False))
+    columns = matrix.T if matrix.shape[0] < matrix.shape[1] else matrix
+    budget.take_bytes(min(columns.shape[1], MAX_MATRIX_COLUMNS) * len(name), "the names of its columns")
+    if columns.shape[1] == 1:
+        yield name or "column_1", columns[:, 0]
+    elif columns.shape[1] <= MAX_MATRIX_COLUMNS:
+        yield from ((f"{name or 'column'}_{number}", columns[:, number - 1]) for number in range(1, columns.shape[1] + 1))

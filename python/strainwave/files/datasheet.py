@@ -9,9 +9,7 @@ from typing import Any
 
 from strainwave import Gear, arguments, friction, hysteresis, kinematic_error, kinematics, stiffness
 from strainwave.files import typical_gear as typical
-from strainwave.files.entries import Entry, Quantity
-from strainwave.files.figure import Figure, quantity_of
-from strainwave.files.gear_set import GearSet
+from strainwave.files.entries import Entry, Figure, Quantity, quantity_of
 from strainwave.messages import listed, shortened, unquoted
 
 UNITS = {
@@ -34,6 +32,27 @@ MAX_SPREAD = 10.0  # relative
 TABLE = "datasheet"
 
 
+@dataclass(frozen=True)
+class DatasheetGear:
+    """A gear by the figures of its data sheet, as `GearSet.from_datasheet` takes it.
+
+    Attributes:
+        gear: its model
+        name, maker, source: of it
+        sources: of its numbers, by path; of others `source`
+        note: contradictions of the sheet
+        ratings: what the maker allows, by name
+    """
+
+    gear: Gear
+    name: str
+    maker: str
+    source: str
+    sources: Mapping[str, Entry]
+    note: str
+    ratings: Mapping[str, Quantity]
+
+
 def from_datasheet(
     ratio: float,
     *,
@@ -44,8 +63,8 @@ def from_datasheet(
     source: str = "data sheet",
     spread: float = typical.UNITS_SPREAD,
     **figures: Figure,
-) -> GearSet:
-    """The set of a gear from the figures of its data sheet, by the rules by which the catalogue was made.
+) -> DatasheetGear:
+    """Return a gear from the figures of its data sheet, by the rules by which the catalogue was made.
 
     Each figure is a number in SI units, a text as the sheet has it, "1.2 N·m/arcmin", "3.1 × 10^4 N·m/rad", "3.4 cN·m", "0.5
     kgf·m", or a `Quantity` with its own source. What is not given is estimated from the catalogue's gears of the size; the size
@@ -77,7 +96,7 @@ def from_datasheet(
             average_input_speed: what the maker allows, the ratings of the set
 
     Returns:
-        The set, with source and spread of each number. `note` contains the contradictions of the sheet.
+        The gear, with source and spread of each number, of which `GearSet.from_datasheet` makes a set
 
     Raises:
         TypeError: a figure is no number, text or quantity; an unknown figure
@@ -106,13 +125,12 @@ def from_datasheet(
     )
     gear, sources, notes = sheet.gear()
     called = name or f"gear of ratio {abs(float(ratio)):g}"
-    gear_set = GearSet.of(gear, name=called, source=source, sources=sources)
     ratings = {each: given[each] for each in RATINGS if each in given}
-    return gear_set.replace(maker=maker, note=" ".join(notes), ratings=ratings)
+    return DatasheetGear(gear, called, maker, source, sources, " ".join(notes), ratings)
 
 
-def read(content: Mapping[str, Any]) -> GearSet:
-    """The set of a file whose table [datasheet] holds the figures, as `from_datasheet` takes them."""
+def read(content: Mapping[str, Any]) -> DatasheetGear:
+    """Return the gear of a file whose table [datasheet] contains the figures, as `from_datasheet` takes them."""
     texts = {key: value for key, value in content.items() if key != TABLE}
     for key, value in texts.items():
         if key not in ("name", "maker", "source"):

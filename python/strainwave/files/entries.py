@@ -1,14 +1,22 @@
-"""Numbers, and where they come from."""
+"""Numbers with their source, as people and data sheets write them, and as files contain them."""
 
 from __future__ import annotations
 
 import dataclasses
+import re
+import reprlib
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import hypot
+from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 from strainwave import arguments
-from strainwave.files.units import check as check_unit, convert
-from strainwave.messages import shortened
+from strainwave.files.units import check, check as check_unit, convert
+from strainwave.messages import quoted, shortened
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 NOT_GIVEN = "not given"
 OPPOSITE = "of the log = -"  # in the source of a motor whose effort a log counts in the other sense
@@ -94,3 +102,164 @@ class Quantity(Entry):
 def check_line(name: str, text: str) -> None:
     if not arguments.text(name, text).strip() or not text.isprintable():
         raise ValueError(f"{name} = {shortened(text)} must be one line of text")
+
+
+# ---- Figures ---------------------------------------------------------------------------------------------------------
+
+
+Figure = float | str | Quantity
+MAX_FIGURE_LETTERS = 200  # characters of a figure: its pattern takes quadratic time
+
+_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
+_WRITTEN = re.compile(
+    r"(?P<number>[+-]?[0-9]+(?:[.,][0-9]+)?)(?:[eE](?P<exponent>[+-]?[0-9]{1,6}))?"
+    r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?[0-9]{1,6})|(?P<raised>⁻?[⁰¹²³⁴-⁹]{1,3})))?"
+    r"\s*(?P<unit>.*)"
+)
+
+
+def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
+    """A figure as a quantity in the unit it is written in.
+
+    Args:
+        name: what the figure is called
+        given: a number in `unit`; a text: the number, with a decimal point or comma and perhaps a power of ten, then the unit,
+            where "≤" may stand before it; or a quantity, which has a source of its own
+        unit: what it must measure
+        source: where it comes from
+
+    Raises:
+        TypeError: it is none of these
+        ValueError: the text is not written so, the comma is ambiguous, or the unit measures something else
+
+    >>> round(quantity_of("k1", "1.2 N·m/arcmin", "N.m/rad", "data sheet").to("N.m/rad").value, 3)
+    4125.296
+    >>> quantity_of("k1", "3,1 × 10^4 Nm/rad", "N.m/rad", "data sheet").value
+    31000.0
+    """
+    if isinstance(given, Quantity):
+        found = given
+    elif isinstance(given, str):
+        found = _read(name, given, unit, source)
+    else:
+        found = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
+    try:
+        found.to(unit)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    return found
+
+
+def _read(name: str, text: str, unit: str, source: str) -> Quantity:
+    if len(text) > MAX_FIGURE_LETTERS:
+        raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_FIGURE_LETTERS}")
+    written = _WRITTEN.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
+    if written is None:
+        raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
+    number = written["number"]
+    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", number):
+        raise ValueError(f"{name} = {quoted(text)}: the comma may separate thousands or decimals; write a point, or none")
+    power = (written["raised"] or written["power"] or "0").translate(_RAISED)
+    value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
+    if not written["unit"] and unit != "1":
+        raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
+    try:
+        return Quantity(value=value, unit=check(written["unit"] or "1"), source=source)
+    except ValueError as error:
+        raise ValueError(f"{name} = {quoted(text)}: {error}") from None
+
+
+# ---- Forms -----------------------------------------------------------------------------------------------------------
+
+
+MAX_ELEMENTS = 1000  # of a list: the sequence of a law has fewer
+
+
+class Form(NamedTuple):
+    """Form of one place of a file: its type, an example of each key, and the name of a key."""
+
+    noun: str
+    schema: Any
+    examples: Mapping[str, str]
+
+
+def schema(name: str, keys: Mapping[str, Any]) -> Any:
+    """A table with these keys: for each its type and the default, which is `...` where the key must be there."""
+    from pydantic import ConfigDict, create_model
+
+    return create_model(name, __config__=ConfigDict(strict=True, extra="forbid", allow_inf_nan=False), **keys)
+
+
+@cache
+def entry_schema(unit: str, without: tuple[str, ...] = ()) -> Any:
+    """A number as files give it: the members of a Quantity, but for those left out here. Only the unit 1 need not be given."""
+    types = get_type_hints(Quantity)
+    keys = {"value": (types["value"], ...), "unit": (types["unit"], "1" if unit == "1" else ...)}
+    for member in dataclasses.fields(Entry):
+        if member.name not in without:
+            keys[member.name] = (types[member.name], ... if member.default is dataclasses.MISSING else member.default)
+    return schema("entry", keys)
+
+
+def elements(content: Any) -> Any:
+    """One entry for each number, where a sequence is written as one entry with a list of numbers."""
+    if isinstance(content, dict) and isinstance(values := content.get("value"), list) and values:
+        return [content | {"value": value} for value in values]
+    return content
+
+
+def checked(form: Form, content: Mapping[str, Any]) -> dict[str, Any]:
+    """The content as plain dictionaries, once it has the form."""
+    from pydantic import TypeAdapter, ValidationError
+
+    adapter = TypeAdapter[Any](form.schema)
+    try:
+        plain: dict[str, Any] = adapter.dump_python(adapter.validate_python(content))
+    except ValidationError as error:
+        # A key that is not known comes first: misspelt, it explains why another one is missing.
+        fault = min(error.errors(), key=lambda fault: fault["type"] != "extra_forbidden")
+        raise ValueError(_explained(fault, form)) from None
+    return plain
+
+
+_WANTED = {
+    "dict_type": "a table",
+    "finite_number": "finite",
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "list_type": "a list",
+    "model_type": "a table",
+    "string_type": "a text",
+}
+
+
+def _explained(fault: ErrorDetails, form: Form) -> str:
+    """Return the error of pydantic in the words of the file: key, value, what is allowed."""
+    kind, given = fault["type"], fault["input"]
+    key, *inner = fault["loc"]
+    attribute = next((name for name in inner if isinstance(name, str)), "")
+    where = str(key) + "".join(f"[{index}]" for index in inner if isinstance(index, int))
+    if kind == "extra_forbidden" and not attribute:
+        return f"{key}: not a {form.noun}; it has {', '.join(form.examples)}"
+    if kind == "too_long":
+        return f"{where} has {len(given)} elements; at most {MAX_ELEMENTS} are read"
+    hint = f"write {form.examples[str(key)]}"
+    if kind == "extra_forbidden":
+        return f"{where}: an entry has no {attribute}; {hint}"
+    number = given.get("value") if isinstance(given, dict) else given
+    if kind in ("missing", "model_type") and type(number) in (int, float):
+        hint = hint.replace("value = …", f"value = {number}")
+    if kind == "missing":
+        return f"{where} has no {attribute}; {hint}" if attribute else f"{where} is missing; {hint}"
+    what = f"{where}.{attribute}".removesuffix(".value").removesuffix(".")
+    return f"{what} = {reprlib.repr(given)} must be {_WANTED[kind]}; {hint}"
+
+
+def inline(value: Any, unit: str, entry: Entry) -> Any:
+    """A number, or several of one entry, as files write it."""
+    import tomlkit
+
+    known = {key: known for key, known in dataclasses.asdict(entry).items() if known is not None}
+    table = tomlkit.inline_table()
+    table.update({"value": value, "unit": unit} | known)
+    return table

@@ -16,9 +16,29 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
 from strainwave.files.budget import MAX_DEPTH, RefusedFile, read_regular
-from strainwave.files.described import ParameterField, PartField, all_paths, default_of, optional, own_paths, parameters, parts
-from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
-from strainwave.files.forms import MAX_ELEMENTS, Form, checked, elements, entry_schema, inline, schema
+from strainwave.files.described import (
+    ParameterField,
+    PartField,
+    all_paths,
+    default_of,
+    optional,
+    origin_lines,
+    own_paths,
+    parameters,
+    parts,
+)
+from strainwave.files.entries import (
+    MAX_ELEMENTS,
+    NOT_GIVEN,
+    Entry,
+    Form,
+    Quantity,
+    checked,
+    elements,
+    entry_schema,
+    inline,
+    schema,
+)
 from strainwave.files.identified_tables import (
     Covariance,
     Validation,
@@ -27,7 +47,6 @@ from strainwave.files.identified_tables import (
     read_validation,
     validation_tables,
 )
-from strainwave.files.origins import origin_lines
 from strainwave.files.writing import replacing
 from strainwave.messages import one_line, quoted
 

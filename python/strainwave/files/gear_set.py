@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_chec
 
 from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
-from strainwave.files import gear_file
+from strainwave.files import datasheet, gear_file
 from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
@@ -35,6 +35,10 @@ _PARTS = [field["name"] for field in Drive.fields]
 
 CATALOGUE_FOLDER = Path(__file__).parents[1] / "catalogue"  # of the package
 FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
+
+
+MAX_LOADED_SETS = 100  # the last ones
+_LOADED_SETS: dict[Gear, GearSet] = {}
 
 
 class Estimated(Protocol):
@@ -220,11 +224,7 @@ class GearSet(Pictured):
         path = _file(name_or_path)
         with gear_file.at(f"{path}"):
             content = gear_file.document(path)
-            if "datasheet" in content:
-                from strainwave.files import datasheet
-
-                return datasheet.read(content)
-            return GearSet(**gear_file.read(content))
+            return _of_sheet(datasheet.read(content)) if "datasheet" in content else GearSet(**gear_file.read(content))
 
     @staticmethod
     def from_datasheet(ratio: float, **figures: Any) -> GearSet:
@@ -242,9 +242,7 @@ class GearSet(Pictured):
         >>> printed.sources["gear.friction_input.breakaway"].source
         'data sheet, starting torque'
         """
-        from strainwave.files.datasheet import from_datasheet
-
-        return from_datasheet(ratio, **figures)
+        return _of_sheet(datasheet.from_datasheet(ratio, **figures))
 
     def replace(self, **changes: Any) -> GearSet:
         """The same with the named members changed; `sources` and `ratings` are replaced as a whole.
@@ -344,7 +342,7 @@ class GearSet(Pictured):
 
     def plot(self) -> Figure:
         """Return a figure of the gear: twist over torque, and friction over speed."""
-        from strainwave.files.gear_plot import gear_figure
+        from strainwave.files.plots import gear_figure
 
         return gear_figure(self.gear, self.name)
 
@@ -404,10 +402,24 @@ def load(name_or_path: str | Path) -> Any:
     gear_set = GearSet.read(name_or_path)
     # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
     if gear_set.ratings and _file(name_or_path).parent not in FOLDERS.values():
-        from strainwave.files.ratings import remember
-
-        remember(gear_set)
+        _LOADED_SETS.pop(gear_set.gear, None)
+        _LOADED_SETS[gear_set.gear] = gear_set
+        if len(_LOADED_SETS) > MAX_LOADED_SETS:
+            del _LOADED_SETS[next(iter(_LOADED_SETS))]
     return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
+
+
+def loaded_set(gear: Gear) -> GearSet | None:
+    """Return the set with ratings that a gear was loaded from; None if it was not loaded from a file with ratings.
+
+    A gear is a value of C++, which a drive copies: it cannot contain its ratings.
+    """
+    return _LOADED_SETS.get(gear) if _LOADED_SETS else None
+
+
+def forget_loaded_sets() -> None:
+    """Forget the sets of all gears that were loaded."""
+    _LOADED_SETS.clear()
 
 
 @overload
@@ -504,6 +516,12 @@ def _estimated(gear_set: GearSet, fit: FittedModel, source: str) -> dict[str, En
     return {path: entry for path, entry in entries.items() if path in gear_set.sources}
 
 
+def _of_sheet(sheet: datasheet.DatasheetGear) -> GearSet:
+    """Return the set of a gear by its data sheet."""
+    gear_set = GearSet.of(sheet.gear, name=sheet.name, source=sheet.source, sources=sheet.sources)
+    return gear_set.replace(maker=sheet.maker, note=sheet.note, ratings=sheet.ratings)
+
+
 def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
     rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
@@ -539,13 +557,26 @@ def _file(name_or_path: str | Path) -> Path:
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
     files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
-    name = re.sub(r"[\s_]+", "-", name_or_path.strip().casefold())  # catalogues print HFUC-25-100
+    name = spelled(name_or_path)
     if name not in files and path.is_dir():
         return path / GEAR_FILE
     if name not in files:
-        near = difflib.get_close_matches(name, files)
+        size, _, ratio = name.rpartition("-")
+        ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
+        near = ", ".join(difflib.get_close_matches(name, files))
+        hint = f"; near it are {near}" if near else ""
+        hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
         raise ValueError(
-            f"no set {quoted(name_or_path)} in the catalogue{'; near it are ' * bool(near)}{', '.join(near)}; "
+            f"no set {quoted(name_or_path)} in the catalogue{hint}; "
             'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
     return files[name]
+
+
+def spelled(name: str) -> str:
+    """Return a name, or a part of one, as the catalogue spells it: makers print HFUC-25-100 or HFUC 25-100.
+
+    >>> spelled("HFUC_25 100")
+    'hfuc-25-100'
+    """
+    return re.sub(r"[\s_]+", "-", name.strip().casefold())

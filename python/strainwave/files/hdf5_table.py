@@ -11,11 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.files.array_table import ArrayTable
+from strainwave.files.array_table import (
+    IN_THE_NAME,
+    MAX_MATRIX_COLUMNS,
+    MAX_NESTING,
+    ArrayTable,
+    Unreadable,
+    object_of_matlab,
+    table_of,
+)
 from strainwave.files.budget import ReadBudget, RefusedFile, budget_of
 from strainwave.files.labels import read_by_others
 from strainwave.files.table_format import Format
-from strainwave.files.variables import IN_THE_NAME, MAX_MATRIX_COLUMNS, MAX_NESTING, Unreadable, object_of_matlab, table_of
 from strainwave.messages import one_line, quoted
 
 MAX_ATTRIBUTE = 1000  # bytes of the name of a class

@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
-from strainwave.files.entries import check_line
-from strainwave.files.forms import Form, checked, schema
+from strainwave.files.entries import Form, check_line, checked, schema
 from strainwave.files.units import check as check_unit
 from strainwave.messages import shortened, unquoted
 

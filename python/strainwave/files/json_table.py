@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from strainwave.files.array_table import ArrayTable
+from strainwave.files.array_table import IN_THE_NAME, MAX_NESTING, ArrayTable, table_of
 from strainwave.files.budget import ReadBudget, RefusedFile, read_regular
 from strainwave.files.labels import unreadable
 from strainwave.files.table_format import Format
-from strainwave.files.variables import IN_THE_NAME, MAX_NESTING, table_of
 from strainwave.messages import one_line
 
 BYTES_OF_VALUE = 64  # that a value takes in memory as Python has it

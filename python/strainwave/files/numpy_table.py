@@ -11,11 +11,10 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.lib import format as numpy_format
 
-from strainwave.files.array_table import ArrayTable
+from strainwave.files.array_table import IN_THE_NAME, ArrayTable, Unreadable, table_of
 from strainwave.files.budget import ReadBudget, RefusedFile, budget_of, open_regular
 from strainwave.files.labels import read_by_others
 from strainwave.files.table_format import Format
-from strainwave.files.variables import IN_THE_NAME, Unreadable, table_of
 from strainwave.messages import one_line
 
 ZIP = b"PK"  # first letters of a file of several arrays

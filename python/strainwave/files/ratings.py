@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, Gear, arguments
+from strainwave import Drive, arguments
 from strainwave.files.entries import Quantity
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, loaded_set
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.messages import shortened
@@ -32,10 +32,6 @@ class RatingWarning(UserWarning):
     >>> print(str(caught[1].message).partition(" (")[0])
     Robot joint: peak torque: 266.2 N.m exceeds the limit of 204 N.m, first at t = 0.0096 s
     """
-
-
-MAX_REMEMBERED = 100  # gears that were loaded last
-_REMEMBERED: dict[Gear, GearSet] = {}
 
 
 @dataclass(frozen=True)
@@ -125,22 +121,9 @@ def drive_of(model: object) -> Drive:
     return model.drive if isinstance(model, GearSet) else arguments.drive(model)
 
 
-def remember(gear_set: GearSet) -> None:
-    """Keeps the ratings of a gear that is handed out without them, for runs of drives that have it."""
-    _REMEMBERED.pop(gear_set.gear, None)
-    _REMEMBERED[gear_set.gear] = gear_set
-    if len(_REMEMBERED) > MAX_REMEMBERED:
-        del _REMEMBERED[next(iter(_REMEMBERED))]
-
-
-def forget() -> None:
-    """Drops all ratings that `remember` keeps."""
-    _REMEMBERED.clear()
-
-
 def warn_of_ratings(model: Drive | GearSet, run: Recording) -> None:
     """Warns the caller of a simulation of a gear set, or with a gear of one, of every limit that the run exceeded."""
-    gear_set = model if isinstance(model, GearSet) else _REMEMBERED.get(model.gear) if _REMEMBERED else None
+    gear_set = model if isinstance(model, GearSet) else loaded_set(model.gear)
     if gear_set is None:
         return
     for check in check_ratings(gear_set, run):

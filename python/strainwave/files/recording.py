@@ -417,7 +417,7 @@ class Recording(Pictured):
         >>> run.plot().get_suptitle()
         'Torque over time'
         """
-        from strainwave.files.recording_plot import recording_figure
+        from strainwave.files.plots import recording_figure
 
         self[arguments.text("against", against)]
         for name in () if names is None else arguments.names("names", names):

@@ -26,7 +26,7 @@ from strainwave.files import (
 from strainwave.files.bag_table import open_bag
 from strainwave.files.budget import RefusedFile, open_regular
 from strainwave.files.labels import sources_of, unreadable
-from strainwave.files.mdf_table import MAGIC, open_mdf
+from strainwave.files.mdf_table import MDF_BEGINNINGS, open_mdf
 from strainwave.files.table_format import Format, OpenTable
 from strainwave.files.text_layout import NUMBER
 from strainwave.files.text_table import open_text
@@ -42,7 +42,7 @@ def _open_dat(path: str | Path) -> OpenTable:
             begin = file.read(8)
     except (OSError, UnicodeError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
-    return open_mdf(path) if begin.startswith(MAGIC) else open_text(path)
+    return open_mdf(path) if begin.startswith(MDF_BEGINNINGS) else open_text(path)
 
 
 LISTED = (

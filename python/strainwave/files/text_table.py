@@ -36,12 +36,12 @@ from strainwave.files.text_layout import (
     NUMBER,
     lines_above,
     lists_apart,
+    pairs_table,
     scope_header,
     seconds_of_clock,
     sideways,
     with_units,
 )
-from strainwave.files.text_pairs import pairs_table
 from strainwave.messages import one_line, quoted
 
 if TYPE_CHECKING:

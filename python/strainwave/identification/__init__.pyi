@@ -1,8 +1,13 @@
 from .excitation.plan import ExperimentPlan as ExperimentPlan, plan_experiments as plan_experiments
-from .fitting.bootstrap import Bootstrap as Bootstrap, bootstrap as bootstrap
-from .fitting.combinations import Combination as Combination, combinations as combinations
+from .fitting.confidence import (
+    Bootstrap as Bootstrap,
+    Minima as Minima,
+    Profile as Profile,
+    bootstrap as bootstrap,
+    minima as minima,
+    profile as profile,
+)
 from .fitting.fit import Fit as Fit
-from .fitting.minima import Minima as Minima, minima as minima
-from .fitting.profile import Profile as Profile, profile as profile
+from .fitting.influence import Combination as Combination, combinations as combinations
 from .identify import Identified as Identified
 from .results.prediction import Prediction as Prediction

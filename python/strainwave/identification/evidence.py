@@ -18,11 +18,10 @@ from strainwave.files.units import convert
 from strainwave.identification.candidates.plain import fit_plain
 from strainwave.identification.checks.sizes import MIN_RATIO, REST_SPEED
 from strainwave.identification.kinds.prepared_log import log_of
-from strainwave.identification.reading.channels import ALIASES, CHANNELS
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import EFFORTS, Side, meaning, words_of
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, EFFORT_WORDS, Side, meaning, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.sides import MIN_MOTOR_SPEED
+from strainwave.identification.reading.roles import MIN_MOTOR_SPEED
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import Answer
 
@@ -30,9 +29,8 @@ USUAL_TORQUE_CONSTANT = 0.1  # N.m/A, of motors of robots' joints (assumed)
 CONSTANT_SPREAD = float(np.log(2.0))  # standard deviation of its logarithm (assumed)
 FRICTION_SPREAD = float(np.log(3.0))  # of the logarithm of the friction of gears of about one size (assumed)
 RATING_SPREAD = float(np.log(2.0))  # of the logarithm of a torque beyond the largest of the ratings (assumed)
-SHARE_OF_TORQUES = (
-    0.8  # of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed)
-)
+# Of the efforts of robots, that are torques; of those beside a torque constant, that are currents (assumed).
+SHARE_OF_TORQUES = 0.8
 SHARE_OF_ROBOTS = 0.95  # of the torques with a word of robots, that are those of joints (assumed)
 SHARE_OF_SIDE = 0.8  # of the torques whose name contains no side, that are counted where the motion was measured (assumed)
 # Of the columns without a unit, in N.m or A and not in thousandths of it: small motors have torques in mN.m (assumed).
@@ -44,8 +42,8 @@ SHARE_OF_OTHER_SPEEDS = 0.1  # of the recordings, that are as slow or fast as an
 RANGE_OF_SPEEDS = float(np.log(1e6))  # of the logarithm of these: from a hundredth of 1 rad/s to 10 000 rad/s
 RANGE_BEHIND_GEAR = 10.0  # of the logarithm of the friction that such a torque contains, below that of the gear (assumed)
 MIN_ODDS = 10.0  # of a reading against each other one, above which it is taken
-SIDES: dict[str, Side] = {"input_torque": "input", "joint_torque": "output"}  # of torques
-UNITS: dict[str, tuple[str, str]] = {"torque": ("N.m", "mN.m"), "current": ("A", "mA")}  # the usual one of each quantity first
+SIDES_OF_TORQUE: dict[str, Side] = {"input_torque": "input", "joint_torque": "output"}  # of torques
+USUAL_UNITS: dict[str, tuple[str, str]] = {"torque": ("N.m", "mN.m"), "current": ("A", "mA")}  # usual one first
 
 
 @dataclass(frozen=True)
@@ -198,7 +196,7 @@ def _channel_of(file: Recognised, *, is_motor_known: bool) -> str:
     """Return the channel of the effort that a log is fitted to; empty if the file has none, or loads the gear with a torque."""
     first = ("current",) * is_motor_known + ("input_torque", "joint_torque", "torque", "current")
     channel = next((name for name in first if name in file.columns), "")
-    return "" if "load_torque" in file.columns or file.columns.keys() >= SIDES.keys() else channel
+    return "" if "load_torque" in file.columns or file.columns.keys() >= SIDES_OF_TORQUE.keys() else channel
 
 
 def efforts_of(file: Recognised, known: GearSoFar, given: FileMapping) -> list[Effort]:
@@ -217,25 +215,27 @@ def efforts_of(file: Recognised, known: GearSoFar, given: FileMapping) -> list[E
     quantity, is_unit_open = CHANNELS[channel].quantity, channel in file.units_assumed
     names = [column, file.columns["speed"]] if is_table else [column]
     meanings = [each for name in names if (each := meaning(Label(name, name, None))) is not None]
-    by_person = {ALIASES.get(each, each) for each in given.columns}
-    has_side = given.side or channel in by_person & set(SIDES) or any(each.side for each in meanings)
+    by_person = {CHANNEL_ALIASES.get(each, each) for each in given.columns}
+    has_side = given.side or channel in by_person & set(SIDES_OF_TORQUE) or any(each.side for each in meanings)
     if is_table:
         has_side = has_side or any(each.robot for each in meanings) or np.abs(file.recording["speed"]).max() > MIN_MOTOR_SPEED
     is_open = not has_side and ratio > MIN_RATIO and (is_table or quantity == "torque")
-    own: Side = file.side or "input" if is_table else SIDES.get(channel, "input")
+    own: Side = file.side or "input" if is_table else SIDES_OF_TORQUE.get(channel, "input")
     of_own = SHARE_OF_ROBOTS if own == "output" and any(each.robot for each in meanings) else SHARE_OF_SIDE
     sides: dict[Side, float] = {own: of_own, "input" if own == "output" else "output": 1.0 - of_own}
     torques = {("joint_torque" if side == "output" else "input_torque", side): share for side, share in sides.items()}
     shares = {("current", side): share for side, share in sides.items()} if quantity == "current" else torques
     shares = shares if is_open else {next(iter(shares)): 1.0}
-    may_be_current = EFFORTS & set(words_of(column)) and not {channel, quantity} & by_person and "current" not in file.columns
+    may_be_current = (
+        EFFORT_WORDS & set(words_of(column)) and not {channel, quantity} & by_person and "current" not in file.columns
+    )
     if not is_table and quantity == "torque" and is_unit_open and may_be_current:
         of_torques = 1.0 - SHARE_OF_TORQUES if "torque_constant" in file.constants else SHARE_OF_TORQUES
         shares = {each: share * of_torques for each, share in shares.items()} | {("current", "input"): 1.0 - of_torques}
     per_ampere, spread = (USUAL_TORQUE_CONSTANT, CONSTANT_SPREAD) if constant is None else (float(constant), 0.0)
     readings = []
     for (name, side), share in shares.items():
-        usual, _ = units = UNITS[CHANNELS[name].quantity]
+        usual, _ = units = USUAL_UNITS[CHANNELS[name].quantity]
         size = {"current": per_ampere, "joint_torque": 1.0 / ratio}.get(name, 1.0)
         of_usual = SHARE_OF_USUAL_UNIT[name]
         of_unit = dict(zip(units, (of_usual, 1.0 - of_usual), strict=True)) if is_unit_open else {file.units[channel]: 1.0}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
@@ -24,21 +24,30 @@ from strainwave.identification.checks.comparisons import (
 )
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.kinds.kind import Kind
+from strainwave.identification.reading.joints import check_one_joint
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import Side
-from strainwave.identification.reading.other_format import other_format
-from strainwave.identification.reading.recognise import Recognised, check_one_joint, recognise
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.several_files import consistent, joined, same_as
-from strainwave.identification.reading.source import BAG, Measurement, MeasurementFile, MeasurementFiles, measurement_files
+from strainwave.identification.reading.source import (
+    BAG_FILE,
+    Measurement,
+    MeasurementFile,
+    MeasurementFiles,
+    measurement_files,
+    other_format,
+)
 from strainwave.identification.readings import answered, decided
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.combined_parameter import CombinedParameter, combine
+from strainwave.identification.results.combined_parameter import CombinedParameter, combine, without_motor
 from strainwave.identification.results.drive import drive_set, name_of_files
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar, compared_path
-from strainwave.identification.results.motor_inertia import without_motor
-from strainwave.identification.results.parameter_state import ParameterState, states_of
-from strainwave.identification.results.ratio import with_kinematics, with_ratio, with_ratio_of_all
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, Check, FileResult
+from strainwave.identification.results.gear_so_far import (
+    GearSoFar,
+    compared_path,
+    with_kinematics,
+    with_ratio,
+    with_ratio_of_all,
+)
+from strainwave.identification.results.parameter_state import ParameterState, over_start_figure, states_of
 from strainwave.messages import listed, one_line, shortened
 from strainwave.presentation import Pictured, Reported, Row, counted
 from strainwave.progress import Progress, in_turn
@@ -120,8 +129,6 @@ class Identified(ComparedByFields, Pictured, Reported):
         Raises:
             ValueError: no identified number has a value in the start set
         """
-        from strainwave.identification.results.comparison_plot import over_start_figure
-
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
 
     def _headline(self) -> str:
@@ -191,9 +198,10 @@ def identify(
     whole = {each.path: each for each in recognised}
     read = {path: whole.get(path, each) for path, each in read.items() if path in whole or isinstance(each, FileResult)}
     with in_turn(progress, len(recognised)) as turn:
-        fits = _Fits.of(start_set, recognised, mapping, accept, turn)
+        copies = same_as(recognised)
+        fits = _fitted(start_set, recognised, copies, mapping, accept, turn)
     own = [each if isinstance(each, FileResult) else fits.results[each.path] for each in read.values()]
-    results = (*_named_apart(own, list(read), fits.copies), *fits.together)
+    results = (*_named_apart(own, list(read), copies), *fits.together)
     results = without_motor(results, accept=accept)
     loads = other_loads(results)
     results = tuple(replace(each, remarks=_in_order(each, loads.get(each.name, ""))) for each in results)
@@ -202,36 +210,18 @@ def identify(
     if not any(each.estimates or each.failed for each in results):
         raise_question(results)
         raise ValueError(f"no file can be used: {'; '.join(map(_why_nothing, results))}")
-    checks = _checks(start_set, results, parameters)
+    failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already
+    checks = (
+        *(check for each in results for check in each.checks), *_nothing_determined(results),
+        *with_start_set(start_set, parameters, failed), *gravity_in_ratings(start_set, parameters, failed),
+        *between_files(parameters, results), *torque_scales(results),
+    )  # fmt: skip
     counted = [each for each in results if not each.same_as and not each.refused and (accept or not each.failed)]
     gear_set = drive_set(start_set, with_means(fits.known, parameters), counted, parameters, name or name_of_files(results))
     return Identified(start_set, results, parameters, with_error_at_constant_speed(gear_set, counted), checks)
 
 
-def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:
-    """Return the set with its error on the whole of a log of which stretches at constant speed were used, if on no other."""
-    logs = (each.recognised for each in files if each.part_of and each.recognised is not None)
-    log = next((each for each in logs if each.kind == "log"), None)
-    if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
-        return gear_set
-    try:
-        found = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
-    except (ValueError, FloatingPointError):  # no torque along its motion can be compared
-        return gear_set
-    own = Validation(
-        one_line(found.name), found.kind, found.channel, found.unit, found.error, found.varies, found.error, found.varies
-    )
-    return replace(gear_set, validation=(*gear_set.validation, own))
-
-
-def _checks(start: GearSet, results: Sequence[FileResult], parameters: Sequence[CombinedParameter]) -> tuple[Check, ...]:
-    """Return the checks of all files, and of what they determine against the start set and each other."""
-    failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already
-    return (
-        *(check for each in results for check in each.checks), *_nothing_determined(results),
-        *with_start_set(start, parameters, failed), *gravity_in_ratings(start, parameters, failed),
-        *between_files(parameters, results), *torque_scales(results),
-    )  # fmt: skip
+# ---- Reading ---------------------------------------------------------------------------------------------------------
 
 
 def check_arguments(gear: object, files: object, mapping: object) -> None:
@@ -255,6 +245,165 @@ def check_arguments(gear: object, files: object, mapping: object) -> None:
         raise TypeError(f"mapping must be a FileMapping, or a function that takes a path, not {shortened(mapping)}")
     if not files:
         raise ValueError("identify needs at least one file of measurements")
+
+
+def read_measurements(
+    opened: MeasurementFiles, mapping: Mapped, start: GearSet
+) -> tuple[dict[Path, Recognised | FileResult], GearSet]:
+    """Return each file as it is read, or why it is refused, by its path; and the set with the ratio given with all files."""
+    sources = {file.path: file for file in opened.files}
+    given = {file.path: _mapping_of(mapping, file.path, file.kind) for file in opened.files}
+    read = {path: _recognised(source, given[path]) for path, source in sources.items()}
+    asked = {path: each.question for path, each in read.items() if isinstance(each, FileResult) and each.question is not None}
+    in_one_reading = consistent(_only_read(read), sources)
+    start = with_ratio_of_all(start, in_one_reading)
+    known = GearSoFar(start, start)
+    for each in in_one_reading:  # as its names and a fit determine, or its question
+        try:
+            file = decided(each, sources[each.path], with_ratio(known, each), given[each.path] or FileMapping())
+            read[each.path] = file if file.question is None else not_used(each.path, file.question, file)
+        except ValueError as error:
+            read[each.path] = not_used(each.path, error, each)
+    for path, question in asked.items():  # in the one answer that the numbers leave, or the question with the possible ones
+        try:
+            read[path] = answered(question, sources[path], known, given[path] or FileMapping())
+        except (ValueError, FloatingPointError) as error:
+            read[path] = not_used(path, error if isinstance(error, QuestionError) else question)
+    for link in opened.links:
+        read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
+    return read, start
+
+
+def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
+    path = file.path
+    if file.recording is None and path.is_dir() and not Path(path, BAG_FILE).is_file():
+        suffixes = listed(f"*{suffix}" for suffix in FORMATS)
+        return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {suffixes}")
+    if file.recording is None and (other := other_format(path)):
+        return FileResult(path.name, refused=other)
+    try:
+        return recognise(file, mapping)
+    except (ValueError, OSError) as error:
+        if file.recording is not None:
+            raise
+        return not_used(path, error)
+
+
+def _mapping_of(mapping: Mapped, path: Path, kind: str | None) -> FileMapping | None:
+    """Return what a person states of a file, with its kind."""
+    stated = mapping if isinstance(mapping, FileMapping) or mapping is None else mapping(path)
+    return stated if kind is None else replace(stated or FileMapping(), kind=kind)
+
+
+def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
+    return [each for each in files.values() if isinstance(each, Recognised)]
+
+
+def not_used(path: Path, error: Exception, file: Recognised | None = None) -> FileResult:
+    """Return the result of a file that is not used, with the reason, or the question that it leaves open."""
+    question = error if isinstance(error, QuestionError) and error.answers else None
+    return FileResult(path.name, file, refused=without_name(str(error), path), question=question)
+
+
+def raise_question(files: Sequence[FileResult]) -> None:
+    """Raise the first question that a file leaves open, with the name of the file."""
+    for each in files:
+        if each.question is not None:
+            raise each.question if each.name in each.question.question else each.question.of(each.name)
+
+
+def without_name(message: str, path: Path) -> str:
+    """Return a message about a file without its name, which stands before it."""
+    for name in (str(path), path.name):
+        for end in (": ", " "):
+            message = message.removeprefix(name + end)
+    return message
+
+
+# ---- Fits ------------------------------------------------------------------------------------------------------------
+
+
+class _Fits(NamedTuple):
+    """The fits of all files.
+
+    Attributes:
+        results: of each file, by its path
+        together: of what several files determine together
+        known: the gear with them
+    """
+
+    results: dict[Path, FileResult]
+    together: list[FileResult]
+    known: GearSoFar
+
+
+@one_thread_of_algebra
+def _fitted(
+    start: GearSet,
+    files: Sequence[Recognised],
+    copies: Mapping[str, str],
+    mapping: Mapped,
+    accept: bool,
+    turn: Callable[[str], None],
+) -> _Fits:
+    """Return the fits of all files, in the order of their kinds, and what files of a kind determine together.
+
+    A file that contains the measurement of another one, or fails a check, changes nothing of the gear.
+    """
+    before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
+    known, results, together = GearSoFar(before, start), dict[Path, FileResult](), list[FileResult]()
+    kinds = [kind_named(name) for name in KINDS]
+    own = {file.path: next(kind for kind in kinds if kind.takes(file, known, files)) for file in files}
+    turns = {file.path: own[file.path].turn(file, {kind.name for kind in own.values()}) for file in files}
+    originals = {kind: [file for file in files if own[file.path] is kind and str(file.path) not in copies] for kind in kinds}
+    for kind in kinds:
+        mine = [file for file in files if turns[file.path][0] == kind.name]
+        for file in sorted(mine, key=lambda file: turns[file.path][1]):
+            turn(file.path.name)
+            result, after = _fit_of_file(own[file.path], file, known, mapping)
+            results[file.path] = result
+            if str(file.path) not in copies and (accept or not result.failed):
+                known = with_kinematics(after, known.gear_set)
+        if originals[kind]:
+            of_all, after = kind.fit_together(originals[kind], known)
+            together += of_all
+            known = after if accept or not any(result.failed for result in of_all) else known
+    for kind in kinds:
+        if originals[kind]:
+            of_all, after = kind.fit_last(originals[kind], known)
+            together += of_all
+            known = after if accept or not any(result.failed for result in of_all) else known
+    return _Fits(results, together, known)
+
+
+def _fit_of_file(kind: Kind, file: Recognised, known: GearSoFar, mapping: Mapped) -> tuple[FileResult, GearSoFar]:
+    """Return the result of a file, and the gear with it."""
+    stated = _mapping_of(mapping, file.path, None)
+    before = replace(with_ratio(known, file), side=None if stated is None else stated.side)
+    file = file.at_ratio(before.gear_set.gear.kinematics.ratio)
+    try:
+        return kind.fit(file, before)
+    except (ValueError, FloatingPointError) as error:
+        return not_used(file.path, error, file), before
+
+
+# ---- Results ---------------------------------------------------------------------------------------------------------
+
+
+def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
+    """Return the results by the names of their files; with their folders, if names come twice."""
+    names = [one_line(path.name if sum(path.name == each.name for each in paths) == 1 else str(path)) for path in paths]
+    by_path = dict(zip(map(str, paths), names, strict=True))
+    return tuple(
+        replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
+        for each, name, path in zip(results, names, paths, strict=True)
+    )
+
+
+def _in_order(result: FileResult, of_load: str) -> tuple[str, ...]:
+    """Return the remarks of a file, that of its load first; lists of what it contains and nothing uses come last."""
+    left_out = () if result.recognised is None else result.recognised.left_out
+    return tuple(sorted(filter(None, (of_load, *result.remarks)), key=left_out.__contains__))
 
 
 def _nothing_determined(results: Sequence[FileResult]) -> list[Check]:
@@ -282,187 +431,6 @@ def _why_nothing(result: FileResult) -> str:
     return f"{result.name}: {fitted}"
 
 
-class _Fits:
-    """The fits of all files, one after the other in the order of their kinds."""
-
-    def __init__(
-        self, known: GearSoFar, copies: Mapping[str, str], mapping: Mapped, accept: bool, turn: Callable[[str], None]
-    ) -> None:
-        self.known, self.copies, self.mapping, self.accept, self.turn = known, copies, mapping, accept, turn
-        self.results = dict[Path, FileResult]()
-        self.together = list[FileResult]()
-
-    @classmethod
-    def of(
-        cls,
-        start: GearSet,
-        files: Sequence[Recognised],
-        mapping: Mapped = None,
-        accept: bool = False,
-        turn: Callable[[str], None] = lambda name: None,
-    ) -> _Fits:
-        """Return the fits of files from a start set."""
-        before = replace(start, covariance=None, validation=())  # of the start set as a whole, not of what files change of it
-        fits = cls(GearSoFar(before, start), same_as(files), mapping, accept, turn)
-        fits.fit_all(files)
-        return fits
-
-    @one_thread_of_algebra
-    def fit_all(self, files: Sequence[Recognised]) -> None:
-        """Fit each file in the turn of its kind, and what files of a kind determine together."""
-        kinds = [kind_named(name) for name in KINDS]
-        own = {file.path: next(kind for kind in kinds if kind.takes(file, self.known, files)) for file in files}
-        turns = {file.path: own[file.path].turn(file, {kind.name for kind in own.values()}) for file in files}
-        for kind in kinds:
-            mine = [file for file in files if turns[file.path][0] == kind.name]
-            for file in sorted(mine, key=lambda file: turns[file.path][1]):
-                self.turn(file.path.name)
-                self.fit(own[file.path], file)
-            self.fit_together(kind.fit_together, self._originals(kind, own, files))
-        for kind in kinds:
-            self.fit_together(kind.fit_last, self._originals(kind, own, files))
-
-    def _originals(self, kind: Kind, own: Mapping[Path, Kind], files: Sequence[Recognised]) -> list[Recognised]:
-        """Return the files of a kind that are no copies of others."""
-        return [file for file in files if own[file.path] is kind and str(file.path) not in self.copies]
-
-    def fit(self, kind: Kind, file: Recognised) -> None:
-        """Fit a file. One that contains the measurement of another one, or fails a check, changes nothing of the gear."""
-        before = replace(with_ratio(self.known, file), side=_side(self.mapping, file))
-        file = file.at_ratio(before.gear_set.gear.kinematics.ratio)
-        try:
-            result, after = kind.fit(file, before)
-        except (ValueError, FloatingPointError) as error:
-            result, after = not_used(file.path, error, file), before
-        self.results[file.path] = result
-        if str(file.path) not in self.copies and (self.accept or not result.failed):
-            self.known = with_kinematics(after, self.known.gear_set)
-
-    def fit_together(
-        self,
-        fit: Callable[[Sequence[Recognised], GearSoFar], tuple[tuple[FileResult, ...], GearSoFar]],
-        files: Sequence[Recognised],
-    ) -> None:
-        """Fit what files of a kind determine together."""
-        results, after = fit(files, self.known) if files else ((), self.known)
-        self.together += results
-        if self.accept or not any(result.failed for result in results):
-            self.known = after
-
-
-def _mapping_of(mapping: Mapped, path: Path, kind: str | None) -> FileMapping | None:
-    """Return what a person states of a file, with its kind."""
-    found = mapping if isinstance(mapping, FileMapping) or mapping is None else mapping(path)
-    return found if kind is None else replace(found or FileMapping(), kind=kind)
-
-
-def _side(mapping: Mapped, file: Recognised) -> Side | None:
-    found = _mapping_of(mapping, file.path, None)
-    return None if found is None else found.side
-
-
-def _named_apart(results: Sequence[FileResult], paths: Sequence[Path], copies: Mapping[str, str]) -> tuple[FileResult, ...]:
-    """Return the results by the names of their files; with their folders, if names come twice."""
-    names = [one_line(path.name if sum(path.name == each.name for each in paths) == 1 else str(path)) for path in paths]
-    by_path = dict(zip(map(str, paths), names, strict=True))
-    return tuple(
-        replace(each, name=name, same_as=by_path.get(copies.get(str(path), ""), ""))
-        for each, name, path in zip(results, names, paths, strict=True)
-    )
-
-
-def _in_order(result: FileResult, of_load: str) -> tuple[str, ...]:
-    """Return the remarks of a file, that of its load first; lists of what it contains and nothing uses come last."""
-    left_out = () if result.recognised is None else result.recognised.left_out
-    return tuple(sorted(filter(None, (of_load, *result.remarks)), key=left_out.__contains__))
-
-
-# ---- Files -----------------------------------------------------------------------------------------------------------
-
-
-def read_measurements(
-    opened: MeasurementFiles, mapping: Mapped, start: GearSet
-) -> tuple[dict[Path, Recognised | FileResult], GearSet]:
-    """Return each file as it is read, or why it is refused, by its path; and the set with the ratio given with all files."""
-    read = {file.path: _recognised(file, _mapping_of(mapping, file.path, file.kind)) for file in opened.files}
-    asked = {path: each.question for path, each in read.items() if isinstance(each, FileResult) and each.question is not None}
-    sources = {file.path: file for file in opened.files}
-    in_one_reading = consistent(_only_read(read), sources)
-    start = with_ratio_of_all(start, in_one_reading)
-    for each in in_one_reading:
-        source = sources[each.path]
-        given = _mapping_of(mapping, each.path, source.kind) or FileMapping()
-        read[each.path] = _decided(each, source, GearSoFar(start, start), given)
-    for path, question in asked.items():
-        given = _mapping_of(mapping, path, sources[path].kind) or FileMapping()
-        read[path] = _answered(question, sources[path], GearSoFar(start, start), given)
-    for link in opened.links:
-        read.setdefault(link, FileResult(link.name, refused=LINK_NOT_FOLLOWED))
-    return read, start
-
-
-def _recognised(file: MeasurementFile, mapping: FileMapping | None) -> Recognised | FileResult:
-    path = file.path
-    if file.recording is None and path.is_dir() and not Path(path, BAG).is_file():
-        known = listed(f"*{suffix}" for suffix in FORMATS)
-        return FileResult(path.name, refused=f"the folder contains no file that may be a measurement, as {known}")
-    if file.recording is None and (other := other_format(path)):
-        return FileResult(path.name, refused=other)
-    try:
-        return recognise(file, mapping)
-    except (ValueError, OSError) as error:
-        if file.recording is not None:
-            raise
-        return not_used(path, error)
-
-
-def _only_read(files: Mapping[Path, Recognised | FileResult]) -> list[Recognised]:
-    return [each for each in files.values() if isinstance(each, Recognised)]
-
-
-def _decided(file: Recognised, source: MeasurementFile, known: GearSoFar, given: FileMapping) -> Recognised | FileResult:
-    """Return a file as it is read, or its question if neither its names nor a fit determine how."""
-    try:
-        file = decided(file, source, with_ratio(known, file), given)
-    except ValueError as error:
-        return not_used(file.path, error, file)
-    return file if file.question is None else not_used(file.path, file.question, file)
-
-
-def _answered(
-    question: QuestionError, source: MeasurementFile, known: GearSoFar, given: FileMapping
-) -> Recognised | FileResult:
-    """Return a file in the one answer to its question that the numbers leave, or the question with those that are possible."""
-    try:
-        return answered(question, source, known, given)
-    except (ValueError, FloatingPointError) as error:
-        return not_used(source.path, error if isinstance(error, QuestionError) else question)
-
-
-def not_used(path: Path, error: Exception, file: Recognised | None = None) -> FileResult:
-    """Return the result of a file that is not used, with the reason, or the question that it leaves open."""
-    question = error if isinstance(error, QuestionError) and error.answers else None
-    return FileResult(path.name, file, refused=without_name(str(error), path), question=question)
-
-
-def raise_question(files: Sequence[FileResult]) -> None:
-    """Raise the first question that a file leaves open, with the name of the file."""
-    for each in files:
-        if each.question is not None:
-            raise each.question if each.name in each.question.question else each.question.of(each.name)
-
-
-def without_name(message: str, path: Path) -> str:
-    """Return a message about a file without its name, which stands before it."""
-    for name in (str(path), path.name):
-        for end in (": ", " "):
-            message = message.removeprefix(name + end)
-    return message
-
-
-# ---- Means -----------------------------------------------------------------------------------------------------------
-
-
 def with_means(known: GearSoFar, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the means of files that agree, if it has the law that the parameter belongs to."""
     gear_set = known.gear_set
@@ -480,3 +448,20 @@ def with_means(known: GearSoFar, parameters: Sequence[CombinedParameter]) -> Gea
             source = Entry(source=f"identified from the {each.taken_from}", uncertainty=each.estimate.sigma)
             gear_set = replace(gear_set, gear=gear, sources={**gear_set.sources, path: source})
     return gear_set
+
+
+def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult]) -> GearSet:
+    """Return the set with its error on the whole of a log of which stretches at constant speed were used, if on no other."""
+    logs = (each.recognised for each in files if each.part_of and each.recognised is not None)
+    log = next((each for each in logs if each.kind == "log"), None)
+    if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
+        return gear_set
+    try:
+        prediction = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
+    except (ValueError, FloatingPointError):  # no torque along its motion can be compared
+        return gear_set
+    own = Validation(
+        one_line(prediction.name), prediction.kind, prediction.channel, prediction.unit, prediction.error, prediction.varies,
+        prediction.error, prediction.varies,
+    )  # fmt: skip
+    return replace(gear_set, validation=(*gear_set.validation, own))

@@ -9,8 +9,8 @@ from pathlib import Path
 from strainwave.files.folder import LINK_NOT_FOLLOWED
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, check_arguments, identify
+from strainwave.identification.reading.joints import joints_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import joints_of
 from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles, measurement_files
 from strainwave.presentation import Presented, Reported, counted
 from strainwave.progress import Progress, in_turn

@@ -15,9 +15,8 @@ from strainwave.identification.kinds.kind import NOT_PREDICTED
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.source import Measurement, MeasurementFiles, measurement_files
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio
 from strainwave.identification.results.prediction import Prediction
-from strainwave.identification.results.ratio import with_ratio
 from strainwave.progress import Progress, in_turn
 
 
@@ -58,7 +57,7 @@ def predict(
     check_arguments(gear, files, mapping)
     gear_set, given = _gear_set(gear), str(gear) if isinstance(gear, str | Path) else "gear.toml"
     read, gear_set = read_measurements(measurement_files(files), mapping, gear_set)
-    found, results = list[Prediction](), list[FileResult]()
+    predictions, results = list[Prediction](), list[FileResult]()
     with in_turn(progress, len(read)) as turn:
         for file in read.values():
             turn(file.path.name if isinstance(file, Recognised) else file.name)
@@ -67,11 +66,11 @@ def predict(
                 results.append(result)
                 kind = "" if result.recognised is None else result.recognised.kind
                 result = Prediction(result.name, gear_set.name, kind, refused=result.refused)
-            found.append(result)
-    if all(each.refused for each in found):
+            predictions.append(result)
+    if all(each.refused for each in predictions):
         raise_question(results)
-        raise ValueError(f"no file can be predicted: {'; '.join(f'{each.name}: {each.refused}' for each in found)}")
-    return tuple(found)
+        raise ValueError(f"no file can be predicted: {'; '.join(f'{each.name}: {each.refused}' for each in predictions)}")
+    return tuple(predictions)
 
 
 def _gear_set(gear: GearSet | Gear | Drive | str | Path) -> GearSet:

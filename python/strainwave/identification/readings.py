@@ -19,16 +19,16 @@ from strainwave.identification.candidates.plain import fit_plain, sliding_square
 from strainwave.identification.checks.sizes import input_speed
 from strainwave.identification.evidence import MIN_ODDS, Effort, Record, Usual, efforts_of, record_of
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
+from strainwave.identification.reading.answers import MAX_ANSWERS, in_words
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import MAX_ANSWERS, Recognised, in_words, recognise
-from strainwave.identification.reading.sides import GIVEN
+from strainwave.identification.reading.recognise import Recognised, recognise
+from strainwave.identification.reading.roles import AS_WAS_GIVEN
 from strainwave.identification.reading.source import MeasurementFile
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
-from strainwave.identification.results.ratio import with_ratio
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED
+from strainwave.identification.results.gear_so_far import GearSoFar, with_ratio
 from strainwave.messages import listed, one_line
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
-from strainwave.statistics.gain import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
+from strainwave.statistics.scale import MIN_READING_GAIN_SIGMA, sigmas_of_gain, without_single_events
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ MAX_OF_USUAL = 0.7  # of the error of the usual reading, which nothing but the f
 MIN_SENSE = 0.5  # of `Plain.sense`: below, inertia is negative or friction drives the motion
 UNITS_OPEN = "no unit is stated, and another one than the usual explains more"
 UNITS_EQUAL = "no unit is stated, and several explain it equally well"
-TORQUES = ("joint_torque", "input_torque")
+TORQUE_CHANNELS = ("joint_torque", "input_torque")
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,7 +241,7 @@ def _read_so(way: _Way, ways: Sequence[_Way], source: MeasurementFile, usual: Us
     if way.reading.answer.label:
         taken = f"taken as most probable: {_name_of(way)}, with the friction and speed nearest to usual ones"
     remark = one_line(f"{taken}: {tried}; {usual.shown(record)}")
-    why = tuple(each for each in read.why if not ("side" in way.reading.answer.given and GIVEN in each))
+    why = tuple(each for each in read.why if not ("side" in way.reading.answer.given and AS_WAS_GIVEN in each))
     return replace(read, question=None, alternatives=(), why=why, remarks=(remark, *read.remarks))
 
 
@@ -301,7 +301,7 @@ def _open(question: str, remaining: Sequence[_Reading]) -> tuple[list[_Reading],
 def _taken(best: _Reading, others: Sequence[_Reading], file: Recognised) -> _Reading:
     """Return the best reading as the only one, with a remark of what each leaves."""
     assert best.file is not None
-    why = tuple(each for each in best.file.why if not (file.question and GIVEN in each))
+    why = tuple(each for each in best.file.why if not (file.question and AS_WAS_GIVEN in each))
     remarks = (_report(best, others), *best.file.remarks)
     return _Reading(Answer(""), replace(best.file, question=None, alternatives=(), why=why, remarks=remarks))
 
@@ -338,7 +338,7 @@ def _doubt(log: PreparedLog) -> str:
 def _report(best: _Reading, others: Sequence[_Reading]) -> str:
     """Return which reading is taken, and what each leaves."""
     assert best.file is not None
-    effort = next(name for name in ("current", *TORQUES, "voltage") if name in best.file.columns)
+    effort = next(name for name in ("current", *TORQUE_CHANNELS, "voltage") if name in best.file.columns)
     least = f"read as {_described(best)}, which leaves {_percent(best)} of {best.file.columns[effort]} unexplained"
     return "; ".join([f"{least} on data held out", *(f"{_described(each)}: {_left(each)}" for each in others)])
 
@@ -355,7 +355,7 @@ def _described(reading: _Reading) -> str:
     """Return side and units of the motions; their channels and that of the torque, if they are not of one side."""
     file = reading.file
     assert file is not None
-    torques = [name for name in TORQUES if name in file.units]
+    torques = [name for name in TORQUE_CHANNELS if name in file.units]
     motions = [name for name in file.units if name.endswith(("_angle", "_speed"))]
     if file.side is not None:
         return f"{listed(file.units[name] for name in motions)} at the {file.side}"

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import tau
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments, typeset
+from strainwave.drawing import marks
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
@@ -22,10 +23,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 MIN_SAMPLES = 16  # of a stretch: its spectrum has 8 frequencies
 MIN_STRETCHES = 4  # of a recording
 OVERLAP_SHARE = 0.75  # share of a stretch that the next one repeats
 MAX_STRETCH_COUNT = 100_000  # whose spectra are computed
+FIGURE_HEIGHT = 3.8  # inches
+DYNAMIC_RANGE = 1e4  # largest over smallest amplitude that a colour shows
+MAX_FREQUENCY_RATIO = 1.5  # of the highest eigenfrequency drawn
+LABEL_SHARE = 0.97  # of the way along the line of an order, where its name stands
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +78,6 @@ class Campbell(ComparedByFields, Pictured):
         Raises:
             TypeError, ValueError: an order or an eigenfrequency is no positive number
         """
-        from strainwave.orders.campbell_plot import campbell_figure
-
         for name, unit, values in (("orders", "1", orders), ("eigenfrequencies", "rad/s", eigenfrequencies)):
             for each in values:
                 arguments.number(name, each, unit, brackets="()", low=0.0)
@@ -146,3 +150,39 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
     order = np.argsort(means, kind="stable")
     amplitude = np.sqrt(2.0 * power[order])
     return Campbell(means[order], frequency / interval, amplitude, column, recording.unit(column), speed, record.remarks)
+
+
+def campbell_figure(diagram: Any, orders: Sequence[float], eigenfrequencies: Sequence[float]) -> Figure:
+    """Return the figure of a `Campbell`, as its `plot` describes it; eigenfrequencies in Hz."""
+    lowest, highest = float(diagram.speed[0]), float(diagram.speed[-1])
+    reached = MAX_FREQUENCY_RATIO * max(eigenfrequencies) if eigenfrequencies else max(orders, default=np.inf) * highest / tau
+    top = min(float(diagram.frequency[-1]), reached)
+    shown = diagram.frequency <= top
+    column = diagram.column.replace("_", " ")
+    dashed = f"; dashed: {'eigenfrequency' if len(eigenfrequencies) == 1 else 'eigenfrequencies'}" if eigenfrequencies else ""
+    with marks.new_figure(FIGURE_HEIGHT, f"Campbell diagram of {column}{dashed}") as figure:
+        axes = figure.subplots()
+        largest = float(diagram.amplitude.max())
+        colours = axes.pcolormesh(
+            diagram.speed, diagram.frequency[shown], diagram.amplitude[:, shown].T,
+            norm="log", vmin=largest / DYNAMIC_RANGE, vmax=largest, cmap="cividis", rasterized=True, shading="nearest",
+        )  # fmt: skip
+        axes.grid(visible=False)
+        axes.set_facecolor("#00224e")  # the darkest of cividis
+        bar = figure.colorbar(colours, ax=axes, location="bottom", aspect=40, pad=0.02)
+        bar.set_label(f"amplitude [{typeset.unit(diagram.unit)}]" if diagram.unit != "1" else "amplitude")
+        for frequency in (each for each in eigenfrequencies if each <= top):
+            axes.axhline(frequency, color="white", linestyle="--", linewidth=1.0)
+            label = f" {typeset.quantity(frequency, 'Hz')}"
+            axes.text(1.0, frequency, label, transform=axes.get_yaxis_transform(), va="center", fontsize="small")
+        for order in orders:
+            end = min(highest, LABEL_SHARE * top * tau / order)
+            axes.plot([lowest, end], [order * lowest / tau, order * end / tau], color="white", linestyle=":", linewidth=0.9)
+            axes.text(
+                end, order * end / tau, f"{order:.4g} ", color="white", ha="right", va="top" if end < highest else "bottom",
+                fontsize="small",
+            )  # fmt: skip
+        axes.set_xlim(lowest, highest)
+        axes.set_ylim(0.0, top)
+        marks.label_axes(axes, "frequency", "Hz", diagram.speed_column.replace("_", " "), "rad/s")
+    return figure

@@ -9,10 +9,12 @@ from math import exp, inf, log, pi, sqrt
 from strainwave.orders.lines import SpectrumLine
 from strainwave.presentation import Presented
 
-RATIOS = range(30, 401)  # of strain wave gears
+STRAIN_WAVE_RATIOS = range(30, 401)  # of strain wave gears
 USUAL_RATIOS = (30, 31, 50, 51, 80, 81, 100, 101, 120, 121, 160, 161)  # that makers offer, with either spline fixed
 USUAL_PREFERENCE = 4.0  # logarithm of the prior odds of these over others (assumed)
-MIN_LINE_ORDER = 2.0 * RATIOS[0]  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
+MIN_LINE_ORDER = (
+    2.0 * STRAIN_WAVE_RATIOS[0]
+)  # per output turn: slower lines of an arm are gravity, inertia and friction of its joints
 MIN_LINE_PERIODS = 20.0  # in the span of the angle: fewer are hysteresis, and friction that varies over the angle
 WAVE_ORDERS = {2.0: 0.45, 4.0: 0.11, 1.0: 0.09, 3.0: 0.02, 6.0: 0.02, 8.0: 0.01}  # prior share of lines by order (assumed)
 MAX_MOTOR_ORDER = 48  # pole pairs, slots and their multiples
@@ -66,17 +68,13 @@ def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float)
     """Return the most probable ratios whose multiples the order lines of a joint are.
 
     The probability of a ratio follows from Bayes' rule. A line is a wave order or an order of the motor with its prior share,
-    or it lies anywhere by accident. That no ratio explains the lines is one hypothesis among them.
-
-    Args:
-        lines: of a spectrum over the joint angle
-        resolution: 1 / revolutions, in which two lines merge [1]
-        highest: order up to which lines were looked for
+    or it lies anywhere by accident. That no ratio explains the lines is one hypothesis among them. The resolution is
+    1 / revolutions, in which two lines merge [1]; lines were looked for up to the highest order.
     """
     usable = usable_lines(lines, resolution)
     if not usable:
         return ()
-    priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in RATIOS}
+    priors = {ratio: exp(USUAL_PREFERENCE) if ratio in USUAL_RATIOS else 1.0 for ratio in STRAIN_WAVE_RATIOS}
     whole = sum(priors.values())
     range_of_logarithms = log(max(highest, 2.0 * MIN_LINE_ORDER) / MIN_LINE_ORDER)
     scores = {}
@@ -89,7 +87,7 @@ def candidates(lines: Sequence[SpectrumLine], resolution: float, highest: float)
     return tuple(RatioCandidate(ratio, exp(scores[ratio][0] - best) / total, scores[ratio][1]) for ratio in ranked)
 
 
-def conclusive(found: Sequence[RatioCandidate]) -> tuple[int, ...]:
+def conclusive(ranked: Sequence[RatioCandidate]) -> tuple[int, ...]:
     """Return the ratio that the candidates determine, or two neighbours: one gear with either spline fixed; else none.
 
     >>> conclusive([RatioCandidate(101, 0.6, ()), RatioCandidate(100, 0.3, ()), RatioCandidate(50, 0.05, ())])
@@ -97,10 +95,10 @@ def conclusive(found: Sequence[RatioCandidate]) -> tuple[int, ...]:
     >>> conclusive([RatioCandidate(44, 0.5, ()), RatioCandidate(22, 0.3, ())])
     ()
     """
-    if not found:
+    if not ranked:
         return ()
-    best = found[0]
-    pair = [best, *(each for each in found[1:] if abs(each.ratio - best.ratio) == 1)][:2]
+    best = ranked[0]
+    pair = [best, *(each for each in ranked[1:] if abs(each.ratio - best.ratio) == 1)][:2]
     if len(pair) == 2 and pair[1].share < MIN_NEIGHBOUR_SHARE * best.share:
         pair.pop()
     if sum(each.share for each in pair) < MIN_CONCLUSIVE_SHARE:
@@ -129,19 +127,14 @@ def _explained(
     return total, tuple(matched)
 
 
-def _other_splines(ratio: int) -> tuple[int, ...]:
-    """Return the turns of the wave generator per output turn, as the spline that is not fixed sees them.
-
-    The gear is one of an even ratio with the circular spline fixed, or of the next odd one with the flexspline fixed.
-    """
-    if ratio in USUAL_RATIOS:
-        return (ratio + 1,) if ratio % 2 == 0 else (ratio - 1,)
-    return ratio + 1, ratio - 1
-
-
 def _teeth(ratio: int, line: float, resolution: float) -> list[tuple[float, float, float]]:
-    """Return order of the input, prior share and place per output turn of the comb's lines that one line may be."""
-    teeth, others = [], _other_splines(ratio)
+    """Return order of the input, prior share and place per output turn of the comb's lines that one line may be.
+
+    The spline that is not fixed sees another number of turns: the gear is one of an even ratio with the circular spline fixed,
+    or of the next odd one with the flexspline fixed.
+    """
+    usual = (ratio + 1,) if ratio % 2 == 0 else (ratio - 1,)
+    teeth, others = [], usual if ratio in USUAL_RATIOS else (ratio + 1, ratio - 1)
     for order, share in WAVE_ORDERS.items():
         teeth.append((order, (1.0 - OTHER_SPLINE_SHARE) * share, order * ratio))
         for other in others:

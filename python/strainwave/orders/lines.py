@@ -1,4 +1,15 @@
-"""Lines in a series: found one after the other in spectra over the angle, over time and over the angles of other joints."""
+r"""Lines in a series: found one after the other in spectra over the angle, over time and over the angles of other joints.
+
+A line of order n is cos(n theta(t)). With the series y and the covariance C of its noise, the sum
+
+.. math:: S(n) = \sum_t (C^{-1} y)_t \, e^{-j n \theta_t}, \qquad I(n) = \sum_t \frac{1}{P(n \omega_t)}
+
+is the generalised matched filter for it (Kay1998): the square of S over I is exponentially distributed where there is noise
+alone, whose power P is that of the frequency at which the order passes; 2 S / I is the amplitude of the line. So a slow
+stretch, where the order passes in low and noisy frequencies, counts for less than a fast one. To divide by C costs one Fourier
+transform, S another one: the products are summed into narrow bins of the angle. Forward and backward are summed apart, since
+ripple of friction changes its sign.
+"""
 
 from __future__ import annotations
 
@@ -10,13 +21,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.orders.scan import Spectrum, order_spectrum_of, spread_of, time_spectrum_of
-from strainwave.orders.smooth_part import Moving, Shaft
+from strainwave.orders.smooth_part import FittedColumns, Moving, Shaft
 from strainwave.presentation import Presented
-from strainwave.statistics.floor import Floor, floor_under
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.spectrum import Floor, floor_under
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 Kind = Literal["order", "time", "joint", "either"]
 
 MAX_LINES = 16  # lines that are looked for
@@ -28,6 +39,155 @@ MIN_OVERLAP = 0.5  # squared canonical correlation [1], from which two waves are
 ORDER_STEPS = 2  # of Gauss and Newton, to which an order converges from a peak
 MAX_ORDER_STEP = 0.25  # resolutions
 SWIFT_WEIGHT = 0.5  # weight [1] of a sample that counts as moving
+BINS_PER_PERIOD = 16  # of the angle in a period of the highest order: a line loses less than 1 % of its height
+LINES_PER_RESOLUTION = 4  # lines of the spectrum for each that is independent
+SPEED_BINS = 128  # bins of the speed, for the information of an order
+FLOOR_LINES = 100  # independent lines whose median is the floor of one
+MEDIAN_VARIANCE = 2.08  # variance of a median of exponential numbers, over that of their mean: 1 / log(2)²
+MIN_OWN_INFORMATION = 0.1  # share of a line [1], that columns fitted before must leave for its amplitude
+MAX_SPECTRUM_LINES = 2**23  # of a spectrum
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """Evidence and amplitude of each order, or of each frequency, in a series.
+
+    Attributes:
+        place: order [1], or frequency [cycles per sample], shape (n,)
+        evidence: twice it is chi-squared distributed with 2 `parts` degrees of freedom where there is noise alone, shape (n,)
+        amplitude: of a line there, the larger one of those of both directions, shape (n,)
+        noise: standard deviation of that amplitude's parts, shape (n,)
+        parts: directions that are summed apart, 1 or 2
+        floors: number of independent lines that the floor of each line rests on
+    """
+
+    place: Array
+    evidence: Array
+    amplitude: Array
+    noise: Array
+    parts: int
+    floors: float
+
+    def false_alarm(self, evidence: Array | float, tested: float) -> Array:
+        """Return the probability that noise alone gives so much anywhere in so many lines: Bonferroni's bound.
+
+        The floor is itself estimated, from few lines: tails of F instead of chi-squared.
+        """
+        from scipy.special import betainc
+
+        single = betainc(self.floors, self.parts, self.floors / (self.floors + np.asarray(evidence)))
+        return np.asarray(np.minimum(1.0, tested * single))
+
+    def evidence_of(self, false_alarm: float, tested: float) -> float:
+        """Return the evidence that noise alone gives anywhere in so many lines with this probability."""
+        from scipy.special import betaincinv
+
+        return self.floors * (1.0 / float(betaincinv(self.floors, self.parts, false_alarm / tested)) - 1.0)
+
+
+def order_spectrum_of(
+    weighed: Array, weight: Array, floor: Floor, shaft: Shaft, lowest: float, highest: float, fitted: FittedColumns
+) -> Spectrum:
+    """Return the spectrum over the angle of a shaft, of a series over its floor from which columns were fitted before."""
+    angle, span = shaft.angle, float(np.ptp(shaft.angle))
+    width = tau / (BINS_PER_PERIOD * highest)
+    bins = int(span / width) + 2
+    length = _good(max(LINES_PER_RESOLUTION * bins, 64))
+    if length > MAX_SPECTRUM_LINES:
+        raise ValueError(
+            f"a spectrum up to order {highest:g} over {span / tau:.6g} revolutions has {length} lines; take a shorter "
+            "stretch, or look for lower orders"
+        )
+    order: Array = (np.arange(length // 2 + 1) * (tau / (length * width))).astype(np.float64)
+    kept = (order >= lowest) & (order <= highest)
+    order = order[kept]
+    senses = shaft.senses(weight)
+    evidence, amplitude, noise = np.zeros(len(order)), np.zeros(len(order)), np.full(len(order), np.inf)
+    cells = ((angle - angle.min()) / width).astype(int)
+    for sense in senses:
+        there = shaft.sense == sense
+
+        def over_angle(series: Array, there: NDArray[np.bool_] = there) -> Complex:
+            binned = np.bincount(cells[there], (series * weight)[there], bins)
+            return np.asarray(np.fft.rfft(binned, length)[kept])
+
+        information = _information(order, np.abs(shaft.speed[there]), weight[there], floor)
+        taken = fitted.taken((shaft.name, sense, lowest, highest), over_angle, float(weight[there] @ weight[there]))
+        own, size, sigma = _beside(over_angle(weighed), information, taken)
+        evidence += own
+        noise = np.where(size > amplitude, sigma, noise)
+        amplitude = np.maximum(amplitude, size)
+    return _levelled(Spectrum(order, evidence, amplitude, noise, len(senses), 0.0))
+
+
+def _beside(filtered: Complex, information: Array, taken: tuple[Array, Complex]) -> tuple[Array, Array, Array]:
+    """Return evidence, amplitude and its standard deviation of each line, fitted together with columns.
+
+    The series is without what the columns take of it. Of a line they take a share, of one phase more than of another: a speed
+    that swings with the order of a gear takes the ripple of one phase. The two parts of the line are solved for beside them.
+    """
+    share, turned = taken
+    left = np.maximum(1.0 - share, np.abs(turned) + MIN_OWN_INFORMATION)
+    whole = left**2 - np.abs(turned) ** 2
+    part = (left * filtered + turned * np.conj(filtered)) / whole / information
+    return np.real(np.conj(filtered) * part), 2.0 * np.abs(part), np.sqrt(2.0 / information * left / whole)
+
+
+def time_spectrum_of(series: Array, weight: Array, floor: Floor, lowest: float, fitted: FittedColumns) -> Spectrum:
+    """Return the spectrum over time, from the lowest frequency [cycles per sample] to half the sampling rate."""
+    length = _good(LINES_PER_RESOLUTION * len(series))
+    place: Array = np.fft.rfftfreq(length).astype(np.float64)
+    kept = (place >= lowest) & (place < 0.5)
+    place = place[kept]
+    squared, level = float(weight @ weight), floor.at(place)
+
+    def over_time(values: Array) -> Complex:
+        return np.asarray(np.fft.rfft(values * weight, length)[kept])
+
+    taken = fitted.taken(("time", lowest), over_time, squared)
+    return _levelled(Spectrum(place, *_beside(over_time(series) / level, squared / level, taken), 1, 0.0))
+
+
+def _levelled(spectrum: Spectrum) -> Spectrum:
+    """Return a spectrum with the expected median around each line: noise over an angle may differ from that over time."""
+    from scipy.ndimage import median_filter
+    from scipy.special import gammaincinv
+
+    independent = len(spectrum.evidence) / LINES_PER_RESOLUTION
+    around = min(FLOOR_LINES, max(1.0, independent))
+    width = max(3, int(around * LINES_PER_RESOLUTION)) | 1
+    thinned = max(1, width // 201)
+    median = median_filter(spectrum.evidence[::thinned], (width // thinned) | 1, mode="reflect")
+    level = np.repeat(median, thinned)[: len(spectrum.evidence)] / float(gammaincinv(spectrum.parts, 0.5))
+    level = np.maximum(level, 1.0)  # what the smooth part took out is no lower floor
+    floors = max(2.0, around / MEDIAN_VARIANCE * spectrum.parts)
+    return replace(spectrum, evidence=spectrum.evidence / level, noise=spectrum.noise * np.sqrt(level), floors=floors)
+
+
+def _information(order: Array, speed: Array, weight: Array, floor: Floor) -> Array:
+    """Return I(n), from a histogram of the speed."""
+    fastest = float(speed.max()) or 1.0
+    cells = np.minimum((speed / fastest * SPEED_BINS).astype(int), SPEED_BINS - 1)
+    counts = np.bincount(cells, weight**2, SPEED_BINS)
+    middles = (np.arange(SPEED_BINS) + 0.5) * fastest / SPEED_BINS
+    used = counts > 0.0
+    information = np.zeros(len(order))
+    for count, middle in zip(counts[used], middles[used], strict=True):
+        information += count / floor.at(order * middle / tau)
+    return np.maximum(information, 1e-300)
+
+
+def _good(length: int) -> int:
+    from scipy.fft import next_fast_len
+
+    return int(next_fast_len(length, real=True))
+
+
+def spread_of(angle: Array, weight: Array) -> float:
+    """Return the standard deviation of the angle [rad], samples counted by their weight."""
+    share = weight**2 / float(weight @ weight)
+    middle = float(share @ angle)
+    return float(np.sqrt(share @ (angle - middle) ** 2))
 
 
 @dataclass(frozen=True)
@@ -139,13 +299,7 @@ class _Spectra:
 
 
 def find_lines(moving: Moving, lowest: float, highest: float, allowed: float) -> LineSearch:
-    """Return all lines that noise makes with less than the allowed probability.
-
-    Args:
-        moving: the series and the shafts
-        lowest, highest: order [1]
-        allowed: probability of a false alarm, over all lines tested together
-    """
+    """Return all lines of these orders [1] that noise makes with less than the allowed probability, over all lines together."""
     kept: list[SpectrumLine] = []
     left = moving.series
     for _ in range(MAX_LINES):
@@ -184,8 +338,7 @@ def _spectra_floor(moving: Moving, left: Array) -> Floor:
 def _spectra(moving: Moving, left: Array, lowest: float, highest: float, floor: Floor | None = None) -> _Spectra:
     weighted, weight = left * moving.weight, moving.weight
     floor = _spectra_floor(moving, left) if floor is None else floor
-    weighed = floor.weighed(weighted)
-    weighed = moving.fitted.left(weighed)
+    weighed = moving.fitted.left(floor.weighed(weighted))
     over_angle = [order_spectrum_of(weighed, weight, floor, moving.own, lowest, highest, moving.fitted)]
     for other in moving.shafts[1:]:
         slow = MIN_PERIODS / other.revolutions
@@ -198,9 +351,9 @@ def _strongest(moving: Moving, spectra: _Spectra) -> SpectrumLine | None:
     """Return the line that noise makes with the least probability, with what it may repeat with; none without an order."""
     if not len(spectra.over_angle[0].place):
         return None
-    found = [_peak_line(moving, shaft, each, spectra) for shaft, each in zip(moving.shafts, spectra.over_angle, strict=True)]
-    found.append(_peak_line(moving, None, spectra.over_time, spectra))
-    best = min(found, key=lambda each: (each.false_alarm, -each.evidence))
+    peaks = [_peak_line(moving, shaft, each, spectra) for shaft, each in zip(moving.shafts, spectra.over_angle, strict=True)]
+    peaks.append(_peak_line(moving, None, spectra.over_time, spectra))
+    best = min(peaks, key=lambda line: (line.false_alarm, -line.evidence))
     margin = max(MIN_EVIDENCE_LEAD, MIN_EVIDENCE_LEAD_SHARE * best.evidence)
     near = [each for each in _passing(moving, best, spectra) if best.evidence - each.evidence <= margin]
     joints = {"joint"} & {each.kind for each in (best, *near)}  # any order of another joint may pass at these frequencies
@@ -254,16 +407,16 @@ def _passing(moving: Moving, line: SpectrumLine, spectra: _Spectra) -> list[Spec
         slow, _, fast = _speeds(moving, _shaft(moving, line))
         low, high = line.order * slow / tau, line.order * fast / tau
     low, high = low - step, high + step
-    found = []
+    peaks = []
     for shaft, spectrum in zip(moving.shafts, spectra.over_angle, strict=True):
         if line.kind == "time" or shaft.name != line.joint:
             slow, _, fast = _speeds(moving, shaft)
             passed = (spectrum.place >= tau * low / fast) & (spectrum.place <= tau * high / slow)
-            found.append(_peak_line(moving, shaft, spectrum, spectra, passed))
+            peaks.append(_peak_line(moving, shaft, spectrum, spectra, passed))
     if line.kind != "time":
         passed = (spectra.over_time.place >= low) & (spectra.over_time.place <= high)
-        found.append(_peak_line(moving, None, spectra.over_time, spectra, passed))
-    return [each for each in found if each.evidence > 0.0]
+        peaks.append(_peak_line(moving, None, spectra.over_time, spectra, passed))
+    return [peak for peak in peaks if peak.evidence > 0.0]
 
 
 def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
@@ -276,10 +429,8 @@ def _speeds(moving: Moving, shaft: Shaft) -> tuple[float, float, float]:
 
 def _overlap(moving: Moving, line: SpectrumLine, other: SpectrumLine, floor: Floor) -> float:
     """Return the largest squared canonical correlation of the waves of two lines under the noise."""
-    bases = []
-    for each in (line, other):
-        bases.append(np.linalg.qr(floor.coordinates(np.stack(waves(moving, each), axis=1)))[0])
-    return float(np.linalg.norm(bases[0].T @ bases[1], 2) ** 2)
+    one, two = (np.linalg.qr(floor.coordinates(np.stack(waves(moving, wave), axis=1)))[0] for wave in (line, other))
+    return float(np.linalg.norm(one.T @ two, 2) ** 2)
 
 
 def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
@@ -299,15 +450,15 @@ def waves(moving: Moving, line: SpectrumLine) -> list[Array]:
 def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tuple[list[SpectrumLine], Array]:
     """Fit all lines together, and the smooth part with them. Return them with their amplitudes, and the series without them."""
     shapes = [waves(moving, line) for line in lines]
-    flat = moving.fitted.left(np.stack([wave for each in shapes for wave in each], axis=1))  # Frisch and Waugh (1933)
+    flat = moving.fitted.left(np.stack([wave for pair in shapes for wave in pair], axis=1))  # Frisch and Waugh (1933)
     values, covariance = weighed_fit(flat, moving.series * moving.weight, floor)
     done, first = [], 0
     left = moving.series.copy()
-    for line, each in zip(lines, shapes, strict=True):
-        last = first + len(each)
-        found, sigmas = values[first:last], np.sqrt(np.diag(covariance)[first:last])
-        parts = [complex(found[k], found[k + 1]) for k in range(0, len(each), 2)]
-        sigma = max(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(each), 2))
+    for line, shape in zip(lines, shapes, strict=True):
+        last = first + len(shape)
+        own, sigmas = values[first:last], np.sqrt(np.diag(covariance)[first:last])
+        parts = [complex(own[k], own[k + 1]) for k in range(0, len(shape), 2)]
+        sigma = max(hypot(sigmas[k], sigmas[k + 1]) / np.sqrt(2.0) for k in range(0, len(shape), 2))
         if line.kind == "time":
             parts = [parts[0], parts[0]]
         elif len(parts) == 1:
@@ -321,14 +472,7 @@ def refitted(moving: Moving, lines: Sequence[SpectrumLine], floor: Floor) -> tup
 
 
 def _with_orders(moving: Moving, lines: Sequence[SpectrumLine], left: Array, floor: Floor) -> list[SpectrumLine]:
-    """Return lines with their orders moved by a step of Gauss and Newton: a peak between skirts of its own is not its line.
-
-    Args:
-        moving: the series and the shafts
-        lines: with their amplitudes
-        left: series without them, shape (n,)
-        floor: of it
-    """
+    """Return lines with their orders moved by a step of Gauss and Newton: a peak between skirts of its own is not its line."""
     moved = [line for line in lines if line.kind != "time"]
     if not moved:
         return list(lines)

@@ -17,9 +17,15 @@ from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.presentation import Presented
 from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError
 
-EFFORTS = ("joint_torque", "torque", "input_torque", "current", "vibration")  # in which ripple is looked for, the best first
-ANGLES: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
-SPEEDS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
+EFFORT_COLUMNS = (
+    "joint_torque",
+    "torque",
+    "input_torque",
+    "current",
+    "vibration",
+)  # in which ripple is looked for, the best first
+ANGLE_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
+SPEED_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,15 +62,10 @@ def orders_found(
     Args:
         recording: columns with the names of a drive log: time, input_angle, output_angle, angle, a speed instead of an angle,
             joint_torque, torque, input_torque, current, vibration
-        name: of the recording, for messages
-        ratio: of the gear, if it is known
         side: on which the angle or speed was measured, if its name does not contain it
         highest: order up to which ripple is looked for, of the shaft whose angle is used: the input of two
         rate: samples per second of a recording without time [Hz]
         other_angles: columns with the angles of other joints that move, by the name of the joint
-
-    Raises:
-        ValueError: the recording has neither two angles nor a torque or current with an angle, or determines no orders
 
     >>> theta = np.linspace(0.0, 400.0, 9000)
     >>> torque = 0.05 + 0.004 * np.cos(2 * theta) + np.random.default_rng(0).normal(0.0, 0.004, len(theta))
@@ -74,49 +75,45 @@ def orders_found(
     """
     if side is not None:
         arguments.one_of("side", side, ("input", "output"))
-    effort = next((each for each in EFFORTS if each in recording), None)
+    effort = next((each for each in EFFORT_COLUMNS if each in recording), None)
     if "input_angle" in recording and "output_angle" in recording:
         load = next((each for each in ("joint_torque", "current") if each in recording), "")
         both = [each for each in ("time", "input_angle", "output_angle", load) if each in recording]
-        found = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
+        error_of_gear = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
         if effort is None:
-            return OrdersFound(name, found, None)
-        in_joint_units = found.ratio.in_joint_units
+            return OrdersFound(name, error_of_gear, None)
+        in_joint_units = error_of_gear.ratio.in_joint_units
         try:
             own = ripple(
                 recording, effort, angle="input_angle", side="output" if in_joint_units else "input",
-                ratio=ratio if in_joint_units else abs(found.ratio.used), highest=highest, rate=rate, other_angles=other_angles,
+                ratio=ratio if in_joint_units else abs(error_of_gear.ratio.used), highest=highest, rate=rate,
+                other_angles=other_angles,
             )  # fmt: skip
         except ValueError as error:
-            return OrdersFound(name, found, None, (f"ripple in {effort} is not determined: {error}",))
-        return OrdersFound(name, found, own)
+            return OrdersFound(name, error_of_gear, None, (f"ripple in {effort} is not determined: {error}",))
+        return OrdersFound(name, error_of_gear, own)
     if effort is None:
         raise ValueError(
             f"orders need two angles, input_angle and output_angle, or one angle and a torque or current; there are "
             f"{listed(recording.names)}"
         )
-    turning, angle, known, remarks = with_angle(recording, side, rate)
-    lines = ripple(turning, effort, angle=angle, side=known, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles)
-    passing = _run_up(lines) if effort == "vibration" else None
-    return OrdersFound(
-        name, None, replace(lines, remarks=(*remarks, *lines.remarks)), () if passing is None else passing.remarks, passing
+    turning, angle, side_of_angle, remarks = with_angle(recording, side, rate)
+    lines = ripple(
+        turning, effort, angle=angle, side=side_of_angle, ratio=ratio, highest=highest, rate=rate, other_angles=other_angles
     )
-
-
-def _run_up(found: Ripple) -> RunUp | None:
-    """Return the orders of a vibration and the resonance that they pass; None if the speed is too constant."""
-    curves = found.curves
-    if "speed" not in curves or not is_run_up(curves["speed"]):
-        return None
-    return run_up(curves.time, curves["angle"], curves["speed"], curves["series"], found.lines)
+    passing, curves = None, lines.curves
+    if effort == "vibration" and "speed" in curves and is_run_up(curves["speed"]):
+        passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
+    lines = replace(lines, remarks=(*remarks, *lines.remarks))
+    return OrdersFound(name, None, lines, () if passing is None else passing.remarks, passing)
 
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
     """Return the recording with an angle, its name and side, and what was done for it."""
-    for name, known in ANGLES:
+    for name, side_of_name in ANGLE_COLUMNS:
         if name in recording:
-            return recording, name, _side(name, known, side), ()
-    for name, known in SPEEDS:
+            return recording, name, _side(name, side_of_name, side), ()
+    for name, side_of_name in SPEED_COLUMNS:
         if name not in recording:
             continue
         if "time" not in recording and rate is None:
@@ -127,7 +124,7 @@ def with_angle(recording: Recording, side: Side | None, rate: float | None) -> t
         step = np.diff(recording.time) if "time" in recording else np.full(len(speed) - 1, 1.0 / float(rate or 1.0))
         angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
         remark = f"there is no angle: {name} is summed up over time; its errors widen the lines"
-        return recording.with_column("angle", angle, "rad"), "angle", _side(name, known, side), (remark,)
+        return recording.with_column("angle", angle, "rad"), "angle", _side(name, side_of_name, side), (remark,)
     raise ValueError(f"orders need an angle, or a speed over time: record one; there are {listed(recording.names)}")
 
 

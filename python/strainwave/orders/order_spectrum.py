@@ -152,14 +152,14 @@ def order_amplitudes(recording: Recording, column: str, order: ArrayLike, *, ang
         explained.append((turned - middle) / span)
         asked.append(_weights(turned, whole[1] - half, whole[1]) - _weights(turned, whole[0], whole[0] + half))
     model, test = np.array(explained), np.array(asked)
-    found = np.linalg.solve(test @ model.T, test @ values)
-    in_phase, across = np.split(found[1 : 2 * len(wanted) + 1], 2)
-    rest = values - found @ model
+    coefficients = np.linalg.solve(test @ model.T, test @ values)
+    in_phase, across = np.split(coefficients[1 : 2 * len(wanted) + 1], 2)
+    rest = values - coefficients @ model
     return Orders(
         order=wanted.copy(),
         amplitude=np.hypot(in_phase, across),
         phase=np.arctan2(across, in_phase),
-        mean=float(found[0]),
+        mean=float(coefficients[0]),
         residual=float(np.sqrt(weights @ rest**2 / weights.sum())),
         revolutions=revolutions,
         unit=recording.unit(column),
@@ -327,5 +327,4 @@ def _weights(turned: Array, low: float, high: float) -> Array:
         return _weights(turned[::-1], low, high)[::-1]
     borders = np.concatenate([turned[:1], 0.5 * (turned[1:] + turned[:-1]), turned[-1:]])
     within = np.clip(borders, low, high)
-    share: Array = np.diff(within)
-    return share
+    return np.asarray(np.diff(within))

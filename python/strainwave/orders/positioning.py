@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.presentation import Presented
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, order_waves, solved
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
@@ -78,9 +77,6 @@ def positioning(commanded: ArrayLike, measured: ArrayLike) -> Positioning:
         commanded: angles in the order of the moves [rad], shape (n,)
         measured: angles reached [rad], shape (n,)
 
-    Raises:
-        ValueError: there are few rows, the command does not change, or lengths differ
-
     >>> targets = np.concatenate([np.arange(0, 41), np.arange(39, -1, -1), np.arange(1, 41), np.arange(39, -1, -1)]) * 1e-3
     >>> reached = [0.0]
     >>> for target in targets[1:]:
@@ -108,17 +104,18 @@ def positioning(commanded: ArrayLike, measured: ArrayLike) -> Positioning:
             break
     both = _differences(target, sense, deviation, kept)
     means, spreads, counts = _by_approach(target, sense, deviation, kept)
-    repeated = [count for count in counts.values() if count > 1]
-    noise = _pooled(spreads, counts)
+    degrees = sum(count - 1 for count in counts.values())
+    squares = sum((counts[approach] - 1) * spread**2 for approach, spread in spreads.items())
+    noise = float(np.sqrt(squares / degrees)) if degrees else nan
     whole = len(both) >= MIN_TARGETS
-    few = min((counts[each] for each in counts), default=0)
+    few = min(counts.values(), default=0)
     remarks = [] if whole else ["too few targets were approached from both sides: lost motion is not determined"]
     if whole and few < APPROACHES_OF_STANDARD:
         remarks.append(
             f"each target was approached {few} times or more in each direction; ISO 230-2 asks for {APPROACHES_OF_STANDARD}"
         )
     orders, why = _orders(wanted[kept], deviation[kept] - 0.5 * np.nan_to_num(lost) * -sense[kept])
-    values, has = list(means.values()), bool(repeated)
+    values, has = list(means.values()), degrees > 0
     upper = max((mean + 2.0 * spreads[each] for each, mean in means.items()), default=nan)
     lower = min((mean - 2.0 * spreads[each] for each, mean in means.items()), default=nan)
     pairs = [(means[place, 1], means[place, -1], place) for place, way_ in means if way_ > 0 and (place, -1) in means]
@@ -174,12 +171,6 @@ def _differences(target: NDArray[np.int64], sense: NDArray[np.int64], deviation:
     return [means[place, -1] - mean for (place, way), mean in means.items() if way > 0 and (place, -1) in means]
 
 
-def _pooled(spreads: _Approaches, counts: dict[tuple[int, int], int]) -> float:
-    """Return the standard deviation of single deviations about the mean of their target and direction."""
-    degrees = sum(count - 1 for count in counts.values())
-    return float(np.sqrt(sum((counts[each] - 1) * spread**2 for each, spread in spreads.items()) / degrees)) if degrees else nan
-
-
 def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, float], ...], list[str]]:
     """Return the orders of deviations over the angle of the axis that stand out, and why there are none.
 
@@ -207,5 +198,5 @@ def _orders(angle: Array, deviation: Array) -> tuple[tuple[tuple[float, float, f
     amplitudes, _ = amplitudes_of(solved(columns, deviation)[1:])
     sigma = float(np.sqrt(left @ left / (len(angle) - columns.shape[1]) * 2.0 / len(angle)))
     lines = zip(orders, amplitudes.tolist(), strict=True)
-    found = tuple(sorted((float(order), size, sigma) for order, size in lines))
-    return found, [] if found else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]
+    strong = tuple(sorted((float(order), size, sigma) for order, size in lines))
+    return strong, [] if strong else [f"no order over the angle stands out of the noise, of those up to {highest} per turn"]

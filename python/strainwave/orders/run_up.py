@@ -12,7 +12,7 @@ and ζ of all orders together are searched.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from math import tau
 
@@ -103,26 +103,26 @@ def run_up(time: Array, angle: Array, speed: Array, series: Array, lines: Sequen
     orders = _whole([line.order for line in lines if line.kind in ("order", "either")])[:MAX_ORDERS]
     fixed = [line.frequency for line in lines if line.kind == "time"]
     problem = _Problem(time, angle, np.abs(speed), series, orders, fixed)
-    start, found = problem.start(), None
+    start, fit = problem.start(), None
     remarks = ["no order stands out, so no resonance is looked for"]
     if start is not None:
-        found, remarks = problem.passed(start)
-        while len(problem.fixed) < MAX_FIXED and (hidden := problem.line_left(found)):
+        fit, remarks = problem.passed(start)
+        while len(problem.fixed) < MAX_FIXED and (hidden := problem.line_left(fit)):
             problem = replace(problem, fixed=[*problem.fixed, hidden])
-            found, remarks = problem.passed(found.values)
-        if why := problem.why_not(found):
-            found, remarks = None, [f"no resonance is determined: {why}"]
-    if found is None:
-        found = problem.without()
-    has = len(found.values) > 0
+            fit, remarks = problem.passed(fit.values)
+        if why := problem.why_not(fit):
+            fit, remarks = None, [f"no resonance is determined: {why}"]
+    if fit is None:
+        fit = problem.fitted_amplitudes(np.zeros(0), np.zeros(0), True, 1.0)
+    values, sigmas = (each.tolist() or [np.nan, np.nan] for each in (fit.values, fit.sigmas))
     return RunUp(
-        tuple(problem.passings(found)),
-        tuple(problem.fixed_lines(found)),
-        float(found.values[0]) if has else np.nan,
-        float(found.sigmas[0]) if has else np.nan,
-        float(found.values[1]) if has else np.nan,
-        float(found.sigmas[1]) if has else np.nan,
-        found.noise,
+        tuple(problem.passings(fit)),
+        tuple(problem.fixed_lines(fit)),
+        values[0],
+        sigmas[0],
+        values[1],
+        sigmas[1],
+        fit.noise,
         tuple(remarks),
     )
 
@@ -201,30 +201,23 @@ class _Problem:
         """Return the fit of frequency and damping."""
         from scipy.optimize import least_squares
 
-        step = max(len(self.series) // SAMPLES_OF_SEARCH, 1)
-
-        def left(rows: slice) -> Callable[[Array], Array]:
-            def of(values: Array) -> Array:
-                columns = self._columns(values, steady)[rows]
-                return np.asarray(self.series[rows] - columns @ solved(columns, self.series[rows]))
-
-            return of
+        def left(values: Array, step: int) -> Array:
+            columns = self._columns(values, steady)[::step]
+            return np.asarray(self.series[::step] - columns @ solved(columns, self.series[::step]))
 
         low, high = min(self.orders) * self.speed.min() / tau, max(self.orders) * self.speed.max() / tau
         bounds = ([low, DAMPING_BOUNDS[0]], [high, DAMPING_BOUNDS[1]])
         scale = [START_DAMPING * start[0], START_DAMPING]
-        found = least_squares(left(slice(None, None, step)), start, x_scale=scale, bounds=bounds)
-        found = least_squares(left(slice(None)), found.x, x_scale=scale, bounds=bounds)
-        correlated, jacobian = max(correlation_length(found.fun), 1.0), np.asarray(found.jac, float)
-        noise = float(np.std(found.fun))
+        step = max(len(self.series) // SAMPLES_OF_SEARCH, 1)
+        coarse = least_squares(left, start, x_scale=scale, bounds=bounds, args=(step,))
+        best = least_squares(left, coarse.x, x_scale=scale, bounds=bounds, args=(1,))
+        correlated, jacobian = max(correlation_length(best.fun), 1.0), np.asarray(best.jac, float)
+        noise = float(np.std(best.fun))
         sigmas = noise * np.sqrt(correlated * np.diag(np.linalg.pinv(jacobian.T @ jacobian)))
-        return self._fit(found.x, sigmas, steady, correlated)
+        return self.fitted_amplitudes(best.x, sigmas, steady, correlated)
 
-    def without(self) -> _Fit:
-        """Return the fit without a resonance."""
-        return self._fit(np.zeros(0), np.zeros(0), True, 1.0)
-
-    def _fit(self, values: Array, sigmas: Array, steady: bool, correlated: float) -> _Fit:
+    def fitted_amplitudes(self, values: Array, sigmas: Array, steady: bool, correlated: float) -> _Fit:
+        """Return the fit at values of frequency and damping; at none, without a resonance."""
         columns = self._columns(values, steady)
         amplitudes = solved(columns, self.series) if columns.shape[1] else np.zeros(0)
         noise = float(np.std(self.series - columns @ amplitudes))
@@ -246,14 +239,13 @@ class _Problem:
 
     def passings(self, fit: _Fit) -> Iterator[OrderPassing]:
         """Yield the orders that stand out, the strongest first."""
-        found = []
+        passings = []
         for order, part in zip(self.orders, self._parts(fit), strict=True):
             size = np.abs(part @ _answers(order * self.speed / tau, fit.values))
             at, ends = int(np.argmax(size)), size[[int(np.argmin(self.speed)), int(np.argmax(self.speed))]].max()
-            found.append(OrderPassing(order, float(ends), float(size[at]), float(self.speed[at]), fit.sigma_of_amplitudes))
-        yield from sorted(
-            (each for each in found if each.largest > MIN_SIGNIFICANCE * each.sigma), key=lambda each: -each.largest
-        )
+            passings.append(OrderPassing(order, float(ends), float(size[at]), float(self.speed[at]), fit.sigma_of_amplitudes))
+        strong = (passing for passing in passings if passing.largest > MIN_SIGNIFICANCE * passing.sigma)
+        yield from sorted(strong, key=lambda passing: -passing.largest)
 
     def fixed_lines(self, fit: _Fit) -> Iterator[tuple[float, float, float]]:
         """Yield the fixed frequencies that stand out, with amplitude and standard deviation."""

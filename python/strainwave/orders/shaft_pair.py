@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave.messages import as_option
-from strainwave.orders.comb import RATIOS
+from strainwave.orders.comb import STRAIN_WAVE_RATIOS
 from strainwave.orders.turning import Evenly, direction, reach_of, smooth_speed
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import normal_inverse, solved
@@ -50,7 +50,7 @@ class Ratio(Presented):
     @property
     def of_strain_wave(self) -> bool:
         """True if a strain wave gear may have the ratio used."""
-        return abs(self.used) in RATIOS
+        return abs(self.used) in STRAIN_WAVE_RATIOS
 
 
 @dataclass(frozen=True)
@@ -86,9 +86,6 @@ def ratio_of(pair: Pair, given: float | None) -> tuple[Pair, Ratio]:
 
     The angles have a ratio near 1 if the controller divides the motor angle by the ratio. With a ratio given it is multiplied
     by it again. A ratio given is used with all its digits.
-
-    Raises:
-        ValueError: the angles do not move together, are swapped, or have another ratio than the one given
     """
     slope = float(np.polyfit(pair.input - pair.input.mean(), pair.output - pair.output.mean(), 1)[0])
     off = pair.output - slope * pair.input
@@ -144,12 +141,12 @@ def _slow_ratio(pair: Pair, near: float) -> tuple[float, float]:
     compared = pair.output - pair.output.mean()
     noise = compared - columns @ solved(columns, compared)
     weight = INDEPENDENT_SAMPLES / len(compared) / max(float(np.mean(noise**2)), MIN_ENCODER_NOISE**2)
-    known = np.diag([0.0, *[1.0 / WINDUP_SIGMA] * int(kept.sum())])
-    covariance = normal_inverse(np.concatenate([np.sqrt(weight) * columns, known]))
-    found = covariance @ (weight * columns.T @ compared)
-    unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ found[1:])) / float(np.std(turned))
+    prior = np.diag([0.0, *[1.0 / WINDUP_SIGMA] * int(kept.sum())])
+    covariance = normal_inverse(np.concatenate([np.sqrt(weight) * columns, prior]))
+    coefficients = covariance @ (weight * columns.T @ compared)
+    unsure = WINDUP_SPREAD * float(np.std(columns[:, 1:] @ coefficients[1:])) / float(np.std(turned))
     sigma = hypot(float(np.sqrt(covariance[0, 0])), unsure)
-    share = float(found[0])
+    share = float(coefficients[0])
     return near / share, abs(near) * sigma / share**2
 
 
@@ -163,13 +160,7 @@ def loads_of(pair: Pair, ratio: float) -> list[Array]:
 
 
 def ratio_remarks(ratio: Ratio, given: float | None, option: str) -> list[str]:
-    """Return what to know of a ratio: whether it is settled, what its sign means, and what to give.
-
-    Args:
-        ratio: as it was found
-        given: by the user, if so
-        option: with which a user gives the ratio
-    """
+    """Return what to know of a ratio: whether it is settled, what its sign means, and what to give."""
     remarks = _found_remarks(ratio, option) if given is None else _given_remarks(ratio, given)
     if not (ratio.whole and ratio.of_strain_wave):
         return remarks

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.orders.turning import Evenly, direction, evenly_turning, reach_of, smooth_speed
-from strainwave.statistics.floor import Floor, floor_of, taper
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import order_waves
+from strainwave.statistics.linear_fit import order_waves, solved
 from strainwave.statistics.scale import robust_sigma
+from strainwave.statistics.spectrum import Floor, floor_of, taper
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -95,15 +94,10 @@ class Shaft:
 
 @dataclass(frozen=True, eq=False)
 class FittedColumns:
-    """Orthonormal columns that were fitted to a series.
-
-    Attributes:
-        basis: the columns, shape (n, k)
-        known: what they take of the lines of spectra, by the spectrum
-    """
+    """Orthonormal columns that were fitted to a series, shape (n, k), and what they take of the lines of spectra."""
 
     basis: Array
-    known: dict[object, tuple[Array, Complex]] = field(default_factory=dict)
+    shares: dict[object, tuple[Array, Complex]] = field(default_factory=dict)
 
     def left(self, series: Array) -> Array:
         """Return series without what the columns take of them, shape (n,) or (n, m)."""
@@ -112,19 +106,16 @@ class FittedColumns:
     def taken(self, spectrum: object, transform: Callable[[Array], Complex], squared: float) -> tuple[Array, Complex]:
         """Return the share of each line that the columns take [1], and by how much more of one phase than of the other.
 
-        Args:
-            spectrum: in which the lines are
-            transform: gives the amount of each line in a series
-            squared: sum of the squared weight of the samples
+        `transform` gives the amount of each line in a series; `squared` is the sum of the squared weight of the samples.
         """
-        if spectrum not in self.known:
+        if spectrum not in self.shares:
             share: Array = np.zeros(1)
             turned: Complex = np.zeros(1, complex)
             for amount in map(transform, self.basis.T):
                 share = share + np.abs(amount) ** 2 / squared
                 turned = turned + amount**2 / squared
-            self.known[spectrum] = share, turned
-        return self.known[spectrum]
+            self.shares[spectrum] = share, turned
+        return self.shares[spectrum]
 
 
 @dataclass(frozen=True)
@@ -215,16 +206,10 @@ def shaft_of(
     """Return the columns of a recording evenly in time, and its shaft with the smooth part; filled rows have no weight.
 
     Args:
-        recording: with the column, the angles, and `time` if it is known
-        column: torque or current
-        angle: column with the angle of the shaft
+        recording, column: a torque or current, with the angles, and `time` if it is known
         others: columns with the angles of other joints, by the name of the joint; those that rest are left out
         rate: samples per second of a recording without time [Hz]
         per_input: revolutions of the input per revolution of the shaft; nan if it is not known
-        count: samples at most, of a long recording the first ones
-
-    Raises:
-        ValueError: the shaft or the column does not change, or the samples are too few or too uneven
     """
     record = evenly_turning(recording, [angle, *others.values()], [column], rate, count)
     columns = record.columns
@@ -275,9 +260,8 @@ def _without_waves(own: Shaft, per_input: float) -> Shaft:
 def _fitted(torque: Array, friction: Array, rest: Array, weight: Array) -> tuple[Array, Array]:
     """Return the smooth part, and the friction in it."""
     columns = np.concatenate([friction, rest], axis=1)
-    found = solved(columns * weight[:, None], torque * weight)
-    count = friction.shape[1]
-    return columns @ found, friction @ found[:count]
+    coefficients = solved(columns * weight[:, None], torque * weight)
+    return columns @ coefficients, friction @ coefficients[: friction.shape[1]]
 
 
 def _friction(speed: Array, shaft: Shaft) -> Array:
@@ -320,8 +304,8 @@ def _outliers(left: Array, weight: Array) -> NDArray[np.bool_]:
     from scipy.ndimage import convolve1d, median_filter
 
     swift = weight > 0.5  # elsewhere friction turns over
-    found: NDArray[np.bool_] = swift.copy()
+    outliers: NDArray[np.bool_] = swift.copy()
     for off in (left - median_filter(left, 5, mode="nearest"), convolve1d(left, np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 6.0)):
         bulk = float(robust_sigma(off[swift])) if swift.any() else 0.0
-        found &= (np.abs(off) > OUTLIER_SIGMA * bulk) & (bulk > 0.0)
-    return found
+        outliers &= (np.abs(off) > OUTLIER_SIGMA * bulk) & (bulk > 0.0)
+    return outliers

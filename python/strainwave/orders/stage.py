@@ -25,8 +25,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.statistics.floor import floor_of
 from strainwave.statistics.linear_fit import normal_inverse, own_share, solved
+from strainwave.statistics.spectrum import floor_of
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -51,6 +51,10 @@ class Stage:
 
     frequency: float
     damping: float
+
+    @property
+    def logarithms(self) -> Array:
+        return np.asarray(np.log([self.frequency, self.damping]))
 
     def gains(self, s: Complex) -> tuple[Complex, Complex]:
         """Return F and H at s = j omega [rad per sample]."""
@@ -102,14 +106,14 @@ class StageProblem:
         """Fit the coefficients, and the output stage if the record determines it."""
         lines = _Lines.of(self)
         still = lines.fitted(None)
+        measured = lines.result(still)
         if not dynamic:
-            return lines.result(still)
+            return measured
         shown = lines.with_signal(still)
         moved = shown.fitted(shown.nearest(still.floor), still.floor)
         gain = lines.misfit(still, shown.counts) - lines.misfit(moved, shown.counts)
         if gain <= MIN_STAGE_GAIN:
-            return lines.result(still)
-        measured = lines.result(still)
+            return measured
         measured = replace(measured, vibrates=self._moves_an_order(measured, moved.values))
         if shown.own_share_of_frequency(moved) <= MIN_OWN_SHARE:
             return measured
@@ -153,8 +157,7 @@ class _Lines:
         kept = (frequency > 0.0) & (frequency < MAX_FREQUENCY)
 
         def lines(series: Array) -> Complex:
-            found: Complex = np.fft.rfft(series, axis=0)[kept] / np.sqrt(count)
-            return found
+            return np.asarray(np.fft.rfft(series, axis=0)[kept] / np.sqrt(count))
 
         straight = np.linspace(problem.angle[0], problem.angle[-1], count)
         s = (2j * pi * frequency[kept]).astype(np.complex128)
@@ -187,17 +190,17 @@ class _Lines:
         """Fit in turns with the weights, which follow from the residual."""
         from scipy.optimize import least_squares
 
+        def missed(logarithms: Array, floor: Array) -> Array:
+            return self.misses(_stage(logarithms), floor)[1]
+
         floor = np.ones(len(self.s)) if floor is None else floor
         values = np.zeros(0)
         for _ in range(FIT_ROUNDS):
             if stage is not None:
-                start = np.log([stage.frequency, stage.damping])
-                bounds = self.bounds
-                start = np.clip(start, bounds[0] + 1e-6, bounds[1] - 1e-6)
-                found = least_squares(
-                    self._missed, start, args=(floor,), bounds=bounds, x_scale=[0.1, 0.3], xtol=1e-5, ftol=1e-7
-                )
-                stage = _stage(found.x)
+                low, high = self.bounds
+                start = np.clip(stage.logarithms, low + 1e-6, high - 1e-6)
+                best = least_squares(missed, start, args=(floor,), bounds=(low, high), x_scale=[0.1, 0.3], xtol=1e-5, ftol=1e-7)
+                stage = _stage(best.x)
             values, _ = self.misses(stage, floor)
             left = self.left(stage, values)
             floor = floor_of(np.abs(left) ** 2, self.count).at(np.abs(self.s.imag) / (2.0 * pi))
@@ -211,8 +214,7 @@ class _Lines:
     def is_within_bounds(self, fitted: _Fitted) -> bool:
         """True if the stage lies within its bounds: one on a bound is no vibration, but stands for something else."""
         assert fitted.stage is not None
-        at = np.log([fitted.stage.frequency, fitted.stage.damping])
-        low, high = self.bounds
+        at, (low, high) = fitted.stage.logarithms, self.bounds
         return bool(np.all((at > low + 1e-3) & (at < high - 1e-3)))
 
     def design(self, stage: Stage | None) -> tuple[Complex, Complex]:
@@ -224,9 +226,6 @@ class _Lines:
         ends = np.stack([h, h * x, np.ones_like(x), self.s / np.abs(self.s[-1])], axis=1) / np.sqrt(self.count)
         series = np.concatenate([self.orders * f[:, None], self.loads * h[:, None], ends], axis=1)
         return series, self.error - h * x**2 * self.angle
-
-    def _missed(self, logarithms: Array, floor: Array) -> Array:
-        return self.misses(_stage(logarithms), floor)[1]
 
     def misses(self, stage: Stage | None, floor: Array) -> tuple[Array, Array]:
         """Return the best coefficients and the residual of the lines that count.
@@ -247,52 +246,46 @@ class _Lines:
         series, compared = self.design(stage)
         return compared - series @ values
 
-    def result(self, found: _Fitted) -> Regressed:
-        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
-        series, _ = self.design(found.stage)
+    def result(self, fitted: _Fitted) -> Regressed:
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / fitted.floor), 0.0)
+        series, _ = self.design(fitted.stage)
         columns = [_stacked(series * weight[:, None])]
-        if found.stage is not None:
-            columns.append(np.stack([self._slope(found, k, weight) for k in (0, 1)], axis=1))
+        if fitted.stage is not None:
+            columns.append(np.stack([self._slope(fitted, k, weight) for k in (0, 1)], axis=1))
         jacobian = np.concatenate(columns, axis=1)
         inverse = normal_inverse(jacobian)
-        left = self.left(found.stage, found.values)
+        left = self.left(fitted.stage, fitted.values)
         scores = self._scores(jacobian, _stacked(left * weight))
         freedom = max(len(scores) - jacobian.shape[1], 1)
         covariance = inverse @ (scores.T @ scores) @ inverse * len(scores) / freedom
         spread = (float("nan"), float("nan"))
-        if found.stage is not None:
+        if fitted.stage is not None:
             spread = (float(np.sqrt(covariance[-2, -2])), float(np.sqrt(covariance[-1, -1])))
-            covariance[:-2, :-2] += self._considered(jacobian[:, :-2], jacobian[:, -2:])
+            # a gear is no linear spring: stiffness and damping differ for ripple and motion. They are not estimated but
+            # considered, each with its spread (Schmidt's consider covariance: Jazwinski1970)
+            shifted = solved(jacobian[:, :-2], jacobian[:, -2:]) * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
+            covariance[:-2, :-2] += np.asarray(shifted @ shifted.T)
         kept = self.orders.shape[1] + self.loads.shape[1]
         whole = np.zeros(self.count // 2 + 1, complex)
         whole[1 : len(left) + 1] = left * np.sqrt(self.count)
         residual = np.fft.irfft(whole, self.count)
-        return Regressed(found.values[:kept], covariance[:kept, :kept], freedom, found.stage, spread, residual)
+        return Regressed(fitted.values[:kept], covariance[:kept, :kept], freedom, fitted.stage, spread, residual)
 
-    def own_share_of_frequency(self, found: _Fitted) -> float:
+    def own_share_of_frequency(self, fitted: _Fitted) -> float:
         """Return the share of what the natural frequency changes [1] that no other amplitudes of orders and loads make up.
 
         It is zero at one speed, one way: there another amplitude and phase of each order predict the same.
         """
-        weight: Array = np.where(self.counts, np.sqrt(2.0 / found.floor), 0.0)
-        linear = _stacked(self.design(found.stage)[0] * weight[:, None])
-        return float(own_share(self._slope(found, 0, weight)[:, None], linear)[0])
+        weight: Array = np.where(self.counts, np.sqrt(2.0 / fitted.floor), 0.0)
+        linear = _stacked(self.design(fitted.stage)[0] * weight[:, None])
+        return float(own_share(self._slope(fitted, 0, weight)[:, None], linear)[0])
 
-    def _slope(self, found: _Fitted, which: int, weight: Array) -> Array:
+    def _slope(self, fitted: _Fitted, which: int, weight: Array) -> Array:
         """Return the slope of the model over the logarithm of the stage's frequency or damping."""
-        assert found.stage is not None
-        at = np.log([found.stage.frequency, found.stage.damping])
-        step = np.eye(2)[which] * 1e-4
-        below, above = (self.left(_stage(at + sign * step), found.values) for sign in (-1.0, 1.0))
+        assert fitted.stage is not None
+        at, step = fitted.stage.logarithms, np.eye(2)[which] * 1e-4
+        below, above = (self.left(_stage(at + sign * step), fitted.values) for sign in (-1.0, 1.0))
         return _stacked((below - above) / 2e-4 * weight)
-
-    def _considered(self, linear: Array, slopes: Array) -> Array:
-        """Return the covariance added by a gear that is no linear spring: stiffness and damping differ for ripple and motion.
-
-        They are not estimated but considered, each with its spread (Schmidt's consider covariance: Jazwinski1970).
-        """
-        moved = solved(linear, slopes) * np.array([0.5 * STIFFNESS_SPREAD, DAMPING_SPREAD])
-        return np.asarray(moved @ moved.T)
 
     def _scores(self, jacobian: Array, left: Array) -> Array:
         """Return sums of series times residual over blocks of time, shape (blocks, n), so that noise may vary in time."""
@@ -305,8 +298,7 @@ class _Lines:
         half = len(self.s)
         whole = np.zeros(self.count // 2 + 1, complex)
         whole[1 : half + 1] = stacked[:half] + 1j * stacked[half:]
-        series: Array = np.fft.irfft(whole, self.count) * np.sqrt(self.count)
-        return series
+        return np.asarray(np.fft.irfft(whole, self.count) * np.sqrt(self.count))
 
 
 def _stage(logarithms: Array) -> Stage:
@@ -314,5 +306,4 @@ def _stage(logarithms: Array) -> Stage:
 
 
 def _stacked(values: Complex) -> Array:
-    stacked: Array = np.concatenate([values.real, values.imag])
-    return stacked
+    return np.concatenate([values.real, values.imag])

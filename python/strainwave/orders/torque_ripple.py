@@ -12,10 +12,19 @@ import numpy as np
 
 from strainwave import arguments, typeset
 from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed
-from strainwave.orders.comb import MIN_LINE_ORDER, RATIOS, RatioCandidate, candidates, conclusive, lowest_usable, usable_lines
+from strainwave.orders.comb import (
+    MIN_LINE_ORDER,
+    STRAIN_WAVE_RATIOS,
+    RatioCandidate,
+    candidates,
+    conclusive,
+    lowest_usable,
+    usable_lines,
+)
 from strainwave.orders.lines import (
     MERGE_PERIODS,
     MIN_PERIODS,
@@ -35,7 +44,7 @@ if TYPE_CHECKING:
 
 Side = Literal["input", "output"]
 
-MIN_RATIO = float(RATIOS[0])  # of strain wave gears that makers offer
+MIN_RATIO = float(STRAIN_WAVE_RATIOS[0])  # of strain wave gears that makers offer
 TYPICAL_RATIO = 100.0
 MAX_RATIO = 161.0
 MAX_INPUT_ORDER = 20.0  # order of the input up to which is looked, without a limit given
@@ -113,11 +122,27 @@ class Ripple(ComparedByFields, Pictured, Reported):
 
     def plot(self) -> Figure:
         """Return a figure of amplitude over order, with the noise, what a line needs, and the lines found."""
-        from strainwave.orders.pictures import draw_spectrum
-
         with marks.new_figure(3.2) as figure:
             draw_spectrum(figure, self)
         return figure
+
+
+def draw_spectrum(figure: Figure, ripple: Ripple) -> None:
+    """Draw amplitude over order, with noise, threshold and lines."""
+    axes = figure.subplots()
+    spectrum = ripple.spectrum
+    order = spectrum["order"]
+    marks.curve(axes, order, spectrum["amplitude"], color=LIGHT["measured"], linewidth=0.9, label="spectrum")
+    marks.curve(axes, order, spectrum["floor"], color=LIGHT["muted"], linewidth=0.9, label="noise")
+    marks.curve(axes, order, spectrum["threshold"], color=LIGHT["earlier"], linestyle="--", label="needed for a line")
+    for kind, colour, mark in (("order", "model", "o"), ("time", "held-out", "x"), ("either", "earlier", "s")):
+        lines = [line for line in ripple.lines if line.kind == kind and line.order <= ripple.highest]
+        if lines:
+            where = [line.order for line in lines], [line.amplitude for line in lines]
+            axes.plot(*where, mark, color=LIGHT[colour], label={"either": "order or time"}.get(kind, f"{kind} line"))
+    axes.set_ylim(bottom=0.0)
+    marks.label_axes(axes, "amplitude", ripple.unit, f"order per revolution of the {ripple.side}", "1")
+    marks.legend(figure, axes)
 
 
 def ripple(
@@ -179,13 +204,13 @@ def ripple(
     _check_sampled(shaft, record, side, size, top, angle)
     if np.isnan(per_input) and (order := _order_of_the_motion(shaft, top)):
         record, shaft = taken_of(per_input=0.5 * order)  # order 2 of the input, the main one of a gear
-    found = find_lines(shaft, lowest, top, false_alarm)
+    search = find_lines(shaft, lowest, top, false_alarm)
     revolutions = shaft.own.revolutions
-    lines = tuple(_line(each, shaft, found, record, side, size) for each in found.lines)
+    lines = tuple(_line(line, shaft, search, record, side, size) for line in search.lines)
     blind = side == "output" and size is None
-    likely = candidates(found.lines, 1.0 / revolutions, top) if blind else ()
-    remarks = [*record.remarks, *_remarks(shaft, found, record, top)]
-    remarks += _ratio_remarks(found, likely, revolutions, top, shaft) if blind else []
+    likely = candidates(search.lines, 1.0 / revolutions, top) if blind else ()
+    remarks = [*record.remarks, *_remarks(shaft, search, record, top)]
+    remarks += _ratio_remarks(search, likely, revolutions, top, shaft) if blind else []
     return Ripple(
         column=column,
         side=side,
@@ -199,8 +224,8 @@ def ripple(
         resolution=1.0 / revolutions,
         lowest=lowest,
         highest=top,
-        spectrum=_spectrum(found, recording.unit(column), false_alarm),
-        curves=_curves(shaft, found, record, recording.unit(column)),
+        spectrum=_spectrum(search, recording.unit(column), false_alarm),
+        curves=_curves(shaft, search, record, recording.unit(column)),
         remarks=tuple(remarks),
     )
 
@@ -251,18 +276,20 @@ def _check_sampled(shaft: Moving, record: Evenly, side: Side, size: float | None
         )
 
 
-def _line(line: SpectrumLine, shaft: Moving, found: LineSearch, record: Evenly, side: Side, size: float | None) -> SpectrumLine:
+def _line(
+    line: SpectrumLine, shaft: Moving, search: LineSearch, record: Evenly, side: Side, size: float | None
+) -> SpectrumLine:
     """Return a line with its frequency in Hz, its order of the input, and its parts."""
     by_ratio = np.nan if size is None or line.joint else line.order / size
     return replace(
         line,
         per_input=line.order if side == "input" else by_ratio,
         frequency=line.frequency / record.step if record.timed else np.nan,
-        parts=_parts(line, shaft, found) if line.kind == "order" else (),
+        parts=_parts(line, shaft, search) if line.kind == "order" else (),
     )
 
 
-def _parts(line: SpectrumLine, shaft: Moving, found: LineSearch) -> tuple[LinePart, ...]:
+def _parts(line: SpectrumLine, shaft: Moving, search: LineSearch) -> tuple[LinePart, ...]:
     """Regress a line on what it may grow with: nothing, direction, load, speed squared (physics of the current signature)."""
     weight = shaft.weight
     share = weight / max(float(np.sqrt(np.mean(weight**2))), 1e-300)
@@ -282,33 +309,29 @@ def _parts(line: SpectrumLine, shaft: Moving, found: LineSearch) -> tuple[LinePa
     columns = np.stack([wave * each / sizes[name] for name, each in growing.items() for wave in (cosine, sine)], axis=1)
     shape = np.stack(waves(shaft, line), axis=1)
     values = [part for part in (line.wave_forward, line.wave_backward) if not np.isnan(part)]
-    series = found.residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
-    coefficients, covariance = weighed_fit(columns, series, found.floor)
+    series = search.residual * weight + shape @ np.array([number for part in values for number in (part.real, part.imag)])
+    coefficients, covariance = weighed_fit(columns, series, search.floor)
     parts = []
     for k, name in enumerate(growing):
         pair, within = coefficients[2 * k : 2 * k + 2], covariance[2 * k : 2 * k + 2, 2 * k : 2 * k + 2]
         evidence = float(pair @ np.asarray(np.linalg.pinv(within)) @ pair)
-        alarm = min(1.0, len(found.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
+        alarm = min(1.0, len(search.lines) * len(growing) * float(np.exp(-0.5 * evidence)))
         parts.append(LinePart(name, float(np.hypot(*pair)), float(np.sqrt(0.5 * np.trace(within))), alarm))
     return tuple(parts)
 
 
-def _spectrum(found: LineSearch, unit: str, allowed: float) -> Recording:
+def _spectrum(search: LineSearch, unit: str, allowed: float) -> Recording:
     """Return amplitude over order, its floor, and the amplitude at which a line is found."""
-    spectrum = found.orders
-    needed = spectrum.evidence_of(allowed, found.tested)
-    columns = {
-        "order": spectrum.place,
-        "amplitude": spectrum.amplitude,
-        "floor": spectrum.noise * np.sqrt(np.pi / 2.0),
-        "threshold": spectrum.noise * np.sqrt(2.0 * needed),
-    }
-    return Recording(columns, {"order": "1", "amplitude": unit, "floor": unit, "threshold": unit}, "spectrum over the angle")
+    spectrum = search.orders
+    needed = spectrum.evidence_of(allowed, search.tested)
+    columns = {"order": spectrum.place, "amplitude": spectrum.amplitude}
+    columns |= {"floor": spectrum.noise * np.sqrt(np.pi / 2.0), "threshold": spectrum.noise * np.sqrt(2.0 * needed)}
+    return Recording(columns, dict.fromkeys(columns, unit) | {"order": "1"}, "spectrum over the angle")
 
 
-def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Recording:
+def _curves(shaft: Moving, search: LineSearch, record: Evenly, unit: str) -> Recording:
     columns = {"time": record.start + record.step * np.arange(len(record)), "angle": shaft.own.angle}
-    columns |= {"series": shaft.series + shaft.smooth, "smooth": shaft.smooth, "residual": found.residual}
+    columns |= {"series": shaft.series + shaft.smooth, "smooth": shaft.smooth, "residual": search.residual}
     columns["speed"] = shaft.own.speed / record.step
     units = {"time": "s", "angle": "rad", "series": unit, "smooth": unit, "residual": unit, "speed": "rad/s"}
     if not record.timed:
@@ -317,37 +340,37 @@ def _curves(shaft: Moving, found: LineSearch, record: Evenly, unit: str) -> Reco
     return Recording(columns, units, "ripple")
 
 
-def _remarks(shaft: Moving, found: LineSearch, record: Evenly, top: float) -> list[str]:
+def _remarks(shaft: Moving, search: LineSearch, record: Evenly, top: float) -> list[str]:
     remarks = []
     if shaft.outliers:
         far = "sample lies" if shaft.outliers == 1 else "samples lie"
         remarks.append(f"{shaft.outliers} {far} far outside of the others; outliers do not count")
-    if any("time" in line.rivals for line in found.lines):
+    if any("time" in line.rivals for line in search.lines):
         remarks.append(
             "the speed is too constant to separate order lines from time lines (mains, resonances); a second run at another "
             "speed settles it"
         )
-    if joints := sorted({rival for line in found.lines for rival in line.rivals if rival != "time"}):
+    if joints := sorted({rival for line in search.lines for rival in line.rivals if rival != "time"}):
         remarks.append(
             f"{_joints(joints)} moved in proportion to this one, so lines may be of either; record this joint while others rest"
         )
-    if joints := sorted({line.joint for line in found.lines if line.kind == "joint"}):
+    if joints := sorted({line.joint for line in search.lines if line.kind == "joint"}):
         remarks.append(f"lines that repeat with the angle of {_joints(joints)} are not of this gear")
-    if found.merged:
+    if search.merged:
         remarks.append(
-            f"{found.merged} weaker lines lie within {MERGE_PERIODS:g} times the resolution of stronger ones and are not "
+            f"{search.merged} weaker lines lie within {MERGE_PERIODS:g} times the resolution of stronger ones and are not "
             "listed: the stronger ones vary with speed or load"
         )
     if not record.timed:
         remarks.append("without time no frequency is known, and samples are taken to be at equal distances in time")
-    beyond = [line for line in found.lines if line.kind == "time" and line.order > top]
+    beyond = [line for line in search.lines if line.kind == "time" and line.order > top]
     if beyond and top < _sampled(shaft):
         limit = min(1.1 * max(line.order for line in beyond), MAX_ORDER)
         remarks.append(
             f"{len(beyond)} time lines pass at orders {listed(f'{line.order:.0f}' for line in beyond)}, beyond the highest "
             f"order looked for, {top:.4g}: they may be orders of the motor; --highest {limit:.0f} looks for these"
         )
-    if not found.lines:
+    if not search.lines:
         remarks.append("no line stands out of the noise; a longer record, slower motion or more load would lower the threshold")
     return remarks
 
@@ -357,11 +380,11 @@ def _joints(names: Sequence[str]) -> str:
 
 
 def _ratio_remarks(
-    found: LineSearch, likely: Sequence[RatioCandidate], revolutions: float, top: float, shaft: Moving
+    search: LineSearch, likely: Sequence[RatioCandidate], revolutions: float, top: float, shaft: Moving
 ) -> list[str]:
     """Return remarks on the ratio: why none is concluded, or which other one is possible."""
     remarks = []
-    slow = [line for line in found.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
+    slow = [line for line in search.lines if line.kind in ("order", "either") and line.order < lowest_usable(1.0 / revolutions)]
     if slow:
         limit = f"{lowest_usable(1.0 / revolutions):.3g}"
         hint = "" if len(shaft.shafts) > 1 else "; name the angles of other joints that move, with --column other_angles=…"
@@ -381,12 +404,12 @@ def _ratio_remarks(
             "this record does not separate; --ratio gives the right one"
         )
     elif likely and not concluded:
-        each = listed(f"{each.ratio} ({100.0 * each.share:.2g} %)" for each in likely[:3])
+        ratios = listed(f"{candidate.ratio} ({100.0 * candidate.share:.2g} %)" for candidate in likely[:3])
         remarks.append(
-            f"no ratio is concluded: the lines fit {each}; give --ratio, or turn further: orders are determined to "
+            f"no ratio is concluded: the lines fit {ratios}; give --ratio, or turn further: orders are determined to "
             f"{1.0 / revolutions:.2g} per revolution"
         )
-    elif found.lines and not usable_lines(found.lines, 1.0 / revolutions):
+    elif search.lines and not usable_lines(search.lines, 1.0 / revolutions):
         remarks.append(
             "no ratio is concluded: no line is surely one of this joint; record this joint alone, at speeds that vary, and "
             "over more of a revolution"

@@ -51,19 +51,11 @@ class Evenly(ComparedByFields):
 
 
 def evenly(recording: Recording, names: Sequence[str], rate: float | None = None) -> Evenly:
-    """Return the named columns, each row at its place in an even time.
+    """Return the named columns, each row at its place in an even time; `rate` [Hz] is for a recording without time.
 
     Stamps are rounded to whole steps of their median distance, so that jitter of the stamps does not matter; where they are
     more uneven than that, rows are put on an even clock by interpolation. Where rows are missing for long, the longest stretch
     without such a gap is taken. Remarks follow.
-
-    Args:
-        recording: with or without the column `time`
-        names: of the columns wanted
-        rate: samples per second, where there is no time [Hz]
-
-    Raises:
-        ValueError: there are too few rows, the stamps are no even time, or both `time` and `rate` are given
     """
     columns = {name: recording[name] for name in names}
     count = len(recording)
@@ -79,9 +71,9 @@ def evenly(recording: Recording, names: Sequence[str], rate: float | None = None
     return _placed(columns, recording.time)
 
 
-def beginning(record: Evenly, count: int) -> Evenly:
+def beginning(record: Evenly, count: int | None) -> Evenly:
     """Return the first samples of a long record, with a remark; a shorter record itself."""
-    if len(record) <= count:
+    if count is None or len(record) <= count:
         return record
     remark = f"the first {count} of {len(record)} samples are used, which is enough for orders"
     columns = {name: values[:count] for name, values in record.columns.items()}
@@ -91,20 +83,8 @@ def beginning(record: Evenly, count: int) -> Evenly:
 def evenly_turning(
     recording: Recording, angles: Sequence[str], columns: Sequence[str], rate: float | None, count: int | None = None
 ) -> Evenly:
-    """Return columns of a recording evenly in time, of a long one the beginning; angles in rad go on over revolutions.
-
-    Args:
-        recording: with or without the column `time`
-        angles: columns with angles of shafts
-        columns: further ones, in their own units
-        rate: samples per second, where there is no time [Hz]
-        count: samples at most; all of them by default
-
-    Raises:
-        ValueError: as `evenly` and `unwrapped`
-    """
-    record = evenly(recording, [*angles, *columns], rate)
-    record = record if count is None else beginning(record, count)
+    """Return columns as `evenly`, at most `count` samples; angles in rad go on over revolutions."""
+    record = beginning(evenly(recording, [*angles, *columns], rate), count)
     turned = {name: unwrapped(name, convert(record.columns[name], recording.unit(name), "rad")) for name in angles}
     return replace(record, columns={**record.columns, **turned})
 
@@ -166,8 +146,8 @@ def _resampled(columns: dict[str, Array], time: Array, step: float) -> Evenly:
         raise ValueError(f"{len(grid)} samples lie between gaps; orders need {MIN_SAMPLES} or more: record without gaps")
     after = np.clip(np.searchsorted(when, grid), 1, len(when) - 1)
     measured = when[after] - when[after - 1] < MAX_FILLED_STEPS * step
-    found = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
-    return Evenly(found, measured, step, True, float(when[0]), tuple(remarks))
+    resampled = {name: np.asarray(Akima1DInterpolator(when, values[stretch])(grid)) for name, values in columns.items()}
+    return Evenly(resampled, measured, step, True, float(when[0]), tuple(remarks))
 
 
 def _longest(place: NDArray[np.int_]) -> slice:
@@ -181,9 +161,6 @@ def unwrapped(name: str, angle: Array) -> Array:
     """Return an angle that goes on where a revolution ends [rad], shape (n,); one that goes on already, unchanged.
 
     An angle that stays within one revolution, and jumps by more than half of one, is taken to wrap.
-
-    Raises:
-        ValueError: it wraps, and turns by nearly half a revolution between two samples
 
     >>> unwrapped("input_angle", np.array([6.0, 6.2, 0.1, 0.3])).round(3)
     array([6.   , 6.2  , 6.383, 6.583])
@@ -214,8 +191,7 @@ def direction(speed: Array) -> Array:
     if not len(moving):
         return np.zeros_like(speed)
     last = np.maximum.accumulate(np.where(sense != 0.0, np.arange(len(sense)), moving[0]))
-    held: Array = sense[last]
-    return held
+    return np.asarray(sense[last])
 
 
 def reach_of(count: int) -> int:

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments, kinematic_error, typeset
 from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
@@ -40,8 +41,8 @@ OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gr
 MIN_ORDER_PERIODS = 3.0  # in the record: gravity, hysteresis and drift follow one or two periods of any wave
 MIN_INPUT_TURNS = 1.0  # of the input: in less, an order is not separated from the next whole one
 MAX_COMPARED = 2**16  # samples that are compared; of a longer record neighbours are averaged as far as orders allow
-LOADS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
-CHANGING = "they change with the speed, as by a vibration of the output that the record does not determine"
+LOAD_UNITS = {"joint_torque": "N.m", "torque": "N.m", "current": "A"}  # columns that wind the gear up, the best first
+WHY_AMPLITUDES_CHANGE = "they change with the speed, as by a vibration of the output that the record does not determine"
 MAX_SPEED_RATIO = 1.5  # of a fast to a slow part of the record [1], up to which its amplitudes are those of one speed
 MAX_HARMONICS = 16  # of `kinematic_error.Fourier`
 
@@ -125,13 +126,10 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
     @property
     def law(self) -> kinematic_error.Fourier:
         """Law of the significant orders of the input and of the mesh, for the input angle as it was recorded."""
-        found = [each for each in self.orders if each.significant and each.shaft != "output"]
-        found = sorted(sorted(found, key=lambda each: -each.amplitude)[:MAX_HARMONICS], key=lambda each: each.order)
-        return kinematic_error.Fourier(
-            order=[each.order for each in found],
-            amplitude=[each.amplitude for each in found],
-            phase=[each.phase for each in found],
-        )
+        lines = [line for line in self.orders if line.significant and line.shaft != "output"]
+        lines = sorted(sorted(lines, key=lambda line: -line.amplitude)[:MAX_HARMONICS], key=lambda line: line.order)
+        numbers = {name: [getattr(line, name) for line in lines] for name in ("order", "amplitude", "phase")}
+        return kinematic_error.Fourier(**numbers)
 
     def _headline(self) -> str:
         orders = counted(sum(each.significant for each in self.orders), "significant order")
@@ -152,11 +150,25 @@ class TransmissionError(ComparedByFields, Pictured, Reported):
 
     def plot(self) -> Figure:
         """Return a figure of the error over the record, its kinematic part and the residual."""
-        from strainwave.orders.pictures import draw_error
-
         with marks.new_figure(3.8) as figure:
             draw_error(figure, self)
         return figure
+
+
+def draw_error(figure: Figure, error: TransmissionError) -> None:
+    """Draw the transmission error over the record, its orders and its residual."""
+    curves = error.curves
+    timed = "time" in curves
+    x = curves["time"] if timed else curves["input_angle"] / tau
+    whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
+    marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
+    marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+    marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
+    residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
+    marks.label_axes(whole, "at the output", "rad")
+    along = ("time", "s") if timed else ("revolutions of the input", "1")
+    marks.label_axes(residual, "left by orders and loads", "rad", *along)
+    marks.legend(figure, whole)
 
 
 def transmission_error(
@@ -204,11 +216,9 @@ def transmission_error(
     (-100.0, [(2.0, 0.0003)])
     """
     check_recording("recording", recording)
-    wanted = np.unique(arguments.numbers("orders", orders))
-    if wanted.ndim != 1 or not wanted.size or not (wanted > 0.0).all():
-        raise ValueError("orders must be one series of positive numbers")
+    wanted = np.unique(arguments.positive_series("orders", orders))
     false_alarm = arguments.probability("false_alarm", false_alarm)
-    load = next((name for name in LOADS if name in recording), None)
+    load = next((name for name in LOAD_UNITS if name in recording), None)
     if ratio is None and isinstance(recording, Run):
         ratio = recording.end.drive.gear.kinematics.ratio
     pair = _pair(recording, load, rate)
@@ -217,26 +227,30 @@ def transmission_error(
     chosen, left_out = _chosen(pair, wanted, measured, ratio)
     chosen, loads, of_weight = _with_one_weight(chosen, loads_of(pair, size), 1.0 / abs(size), load)
     shapes = [wave(order * pair.input) for order, _ in chosen for wave in (np.sin, np.cos)]
-    found, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
-    error = sum((value * wave for value, wave in zip(found.values, shapes, strict=False)), np.zeros(len(pair.input)))
+    fit, every = _regressed(pair, size, shapes, loads, dynamic=pair.record.timed)
+    error = sum((value * wave for value, wave in zip(fit.values, shapes, strict=False)), np.zeros(len(pair.input)))
     whole, place = pair.input / size - pair.output, len(shapes)  # of the direction, the first of the loads
-    lost = MeasuredValue(2.0 * float(found.values[place]), 2.0 * float(np.sqrt(found.covariance[place, place])), "rad")
-    frequency, damping = _stage_numbers(found, pair.record, every)
-    speeds, vibrates = _speeds_of_amplitudes(found, pair) if chosen else "", found.vibrates and not _at_one_speed(pair)
+    lost = MeasuredValue(2.0 * float(fit.values[place]), 2.0 * float(np.sqrt(fit.covariance[place, place])), "rad")
+    frequency = damping = None
+    if fit.stage is not None and pair.record.timed:
+        hertz = fit.stage.frequency / (tau * pair.record.step * every)
+        frequency = MeasuredValue(hertz, hertz * fit.spread[0], "Hz")
+        damping = MeasuredValue(fit.stage.damping, fit.stage.damping * fit.spread[1], "1")
+    speeds, vibrates = _speeds_of_amplitudes(fit, pair) if chosen else "", fit.vibrates and not _at_one_speed(pair)
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
-    remarks += _stage_remarks(found, pair, every, chosen, speeds)
+    remarks += _stage_remarks(fit, pair, every, chosen, speeds)
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
         ratio=measured,
-        orders=tuple(_orders(chosen, found, false_alarm)),
+        orders=tuple(_orders(chosen, fit, false_alarm)),
         lost_motion=lost if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
         natural_frequency=frequency,
         damping_ratio=damping,
-        noise=float(np.sqrt(np.mean(found.residual**2))),
+        noise=float(np.sqrt(np.mean(fit.residual**2))),
         revolutions=float(np.ptp(pair.input)) / tau,
-        curves=_curves(pair, whole - whole.mean(), error, found.residual, every),
+        curves=_curves(pair, whole - whole.mean(), error, fit.residual, every),
         remarks=(*pair.record.remarks, *remarks),
         speeds=speeds,
         vibrates=bool(speeds) and vibrates,
@@ -260,7 +274,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     turns_in, turns_out = float(np.ptp(pair.input)) / tau, float(np.ptp(pair.output)) / tau
     highest = MAX_FREQUENCY * tau / pair.fastest if pair.fastest > 0.0 else inf
     lowest = MIN_ORDER_PERIODS / turns_in if turns_in >= MIN_INPUT_TURNS else inf
-    found: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
+    chosen: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
         remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
@@ -269,22 +283,22 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
-    if found and turns_out < MIN_ORDER_PERIODS:
+    if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():
             mesh = order * (1.0 - 1.0 / ratio.used)
-            if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in found):
-                found.append((mesh, "mesh"))
-        found += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
-    elif found and ratio.of_strain_wave:
+            if lowest <= mesh < highest and not any(abs(mesh - other) * turns_in < 1.0 for other, _ in chosen):
+                chosen.append((mesh, "mesh"))
+        chosen += [(order * slip, "output") for order in OUTPUT_ORDERS if order * turns_out >= MIN_ORDER_PERIODS * (1.0 - 1e-3)]
+    elif chosen and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
             f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
             "spline, are separated after a whole one"
         )
-    return found, remarks
+    return chosen, remarks
 
 
 def _with_one_weight(
@@ -308,18 +322,17 @@ def _regressed(
     problem = StageProblem(
         angle=_means(pair.input / ratio, every),
         error=_means(pair.input / ratio - pair.output, every),
-        orders=np.stack([_means(each, every) for each in shapes], axis=1)
+        orders=np.stack([_means(shape, every) for shape in shapes], axis=1)
         if shapes
         else np.zeros((len(pair.input) // every, 0)),
-        loads=np.stack([_means(each, every) for each in loads], axis=1),
+        loads=np.stack([_means(load, every) for load in loads], axis=1),
     )
     return problem.regress(dynamic=dynamic), every
 
 
 def _means(series: Array, every: int) -> Array:
     """Return means of so many neighbours each; the rest at the end is left out."""
-    means: Array = series[: len(series) // every * every].reshape(-1, every).mean(axis=1)
-    return means
+    return np.asarray(series[: len(series) // every * every].reshape(-1, every).mean(axis=1))
 
 
 def _mean_of(fastest: float) -> int:
@@ -333,18 +346,18 @@ def _averaged(record: Evenly, recording: Recording) -> int:
     return _mean_of(float(np.quantile(np.minimum(steps, np.abs(tau - steps)), 0.99)))
 
 
-def _orders(chosen: Sequence[tuple[float, Shaft]], found: Regressed, allowed: float) -> Iterator[ErrorOrder]:
+def _orders(chosen: Sequence[tuple[float, Shaft]], fit: Regressed, allowed: float) -> Iterator[ErrorOrder]:
     """Yield each order with its standard deviations and its significance."""
     for place, (order, shaft) in enumerate(chosen):
         own = slice(2 * place, 2 * place + 2)
-        pair, covariance = found.values[own], found.covariance[own, own]
+        pair, covariance = fit.values[own], fit.covariance[own, own]
         sine, cosine = pair.tolist()
         amplitude, phase = hypot(sine, cosine), float(np.arctan2(cosine, sine))
         along = np.array([np.cos(phase), np.sin(phase)])
         across = np.array([-along[1], along[0]])
         sigmas = [float(np.sqrt(max(each @ covariance @ each, 0.0))) for each in (along, across)]
         square = float(pair @ np.asarray(np.linalg.pinv(covariance)) @ pair)
-        single = (1.0 + square / found.freedom) ** (-0.5 * found.freedom)  # tail of F(2, freedom)
+        single = (1.0 + square / fit.freedom) ** (-0.5 * fit.freedom)  # tail of F(2, freedom)
         alarm = min(1.0, len(chosen) * single)
         turn = sigmas[1] / amplitude if amplitude > 0.0 else inf
         yield ErrorOrder(order, shaft, amplitude, phase, sigmas[0], min(turn, pi / np.sqrt(3.0)), alarm, alarm < allowed)
@@ -354,26 +367,12 @@ def _windup(pair: Pair, twist: Array, load: str | None, recording: Recording) ->
     """Return the twist per torque or current, fitted with direction, speed and acceleration of the input."""
     if load is None or float(np.ptp(pair.record.columns[load])) == 0.0:
         return None
-    reach = reach_of(len(twist))
-    unit = LOADS[load]
+    unit, speed = LOAD_UNITS[load], pair.speed
     driven = convert(pair.record.columns[load], recording.unit(load), unit)
-    speed = pair.speed
-    acceleration = smooth_speed(speed, reach)
-    loads = np.stack([driven, direction(speed), speed, acceleration], axis=1)
-    found = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
-    return MeasuredValue(
-        float(found.values[0]), float(np.sqrt(found.covariance[0, 0])), f"rad/({unit})" if "." in unit else f"rad/{unit}"
-    )
-
-
-def _stage_numbers(found: Regressed, record: Evenly, every: int) -> tuple[MeasuredValue | None, MeasuredValue | None]:
-    if found.stage is None or not record.timed:
-        return None, None
-    hertz = found.stage.frequency / (tau * record.step * every)
-    return (
-        MeasuredValue(hertz, hertz * found.spread[0], "Hz"),
-        MeasuredValue(found.stage.damping, found.stage.damping * found.spread[1], "1"),
-    )
+    loads = np.stack([driven, direction(speed), speed, smooth_speed(speed, reach_of(len(twist)))], axis=1)
+    fit = StageProblem(np.zeros(len(twist)), twist, np.zeros((len(twist), 0)), loads).regress(dynamic=False)
+    per_load = f"rad/({unit})" if "." in unit else f"rad/{unit}"
+    return MeasuredValue(float(fit.values[0]), float(np.sqrt(fit.covariance[0, 0])), per_load)
 
 
 def _at_one_speed(pair: Pair) -> bool:
@@ -382,19 +381,19 @@ def _at_one_speed(pair: Pair) -> bool:
     return bool(fast <= MAX_SPEED_RATIO * slow)
 
 
-def _speeds_of_amplitudes(found: Regressed, pair: Pair) -> str:
+def _speeds_of_amplitudes(fit: Regressed, pair: Pair) -> str:
     """Return the speeds of the input at which alone amplitudes are measured; empty if they are those of the gear."""
     one = _at_one_speed(pair)
-    if found.stage is not None or not pair.record.timed or not (found.vibrates or one):
+    if fit.stage is not None or not pair.record.timed or not (fit.vibrates or one):
         return ""
     slow, usual, fast = np.quantile(np.abs(pair.speed), [0.05, 0.5, 0.95]) / pair.record.step * 30.0 / pi
     return f"{usual:.4g} 1/min of the input" if one else f"{slow:.4g} to {fast:.4g} 1/min of the input"
 
 
-def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]], speeds: str) -> list[str]:
-    if found.stage is not None:
+def _stage_remarks(fit: Regressed, pair: Pair, every: int, chosen: Sequence[tuple[float, Shaft]], speeds: str) -> list[str]:
+    if fit.stage is not None:
         fastest = max((order for order, _ in chosen), default=0.0) * pair.fastest * every
-        if fastest < 0.3 * found.stage.frequency:
+        if fastest < 0.3 * fit.stage.frequency:
             return []
         return [
             "orders come near the natural frequency of the output, or pass it: their amplitudes are corrected for it, and less "
@@ -404,7 +403,7 @@ def _stage_remarks(found: Regressed, pair: Pair, every: int, chosen: Sequence[tu
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
     if not speeds:
         return []
-    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else CHANGING
+    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else WHY_AMPLITUDES_CHANGE
     return [
         f"amplitudes are those measured at {speeds}: {why}, and they are not corrected for it; if speeds from slow to fast are "
         "in one record, they are"

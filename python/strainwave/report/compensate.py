@@ -16,10 +16,9 @@ from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
-from strainwave.tuning.candidates import EFFECTS
-from strainwave.tuning.compensate import Compensated
+from strainwave.tuning.candidates import GEAR_EFFECTS
+from strainwave.tuning.compensate import Compensated, draw_errors
 from strainwave.tuning.judging import Judged
-from strainwave.tuning.pictures import draw_errors
 
 if TYPE_CHECKING:
     pass
@@ -61,7 +60,7 @@ def _or_none(value: float, unit: str) -> str:
 def removed(found: Compensated) -> Iterator[str]:
     """Yield for each effect the change by its model, if the models of all other effects are present."""
     setting, figure = found.tried[0].candidate.setting, found.goal.judged_by
-    present = tuple(effect for effect in EFFECTS if found.model_of((effect,), setting) is not None)
+    present = tuple(effect for effect in GEAR_EFFECTS if found.model_of((effect,), setting) is not None)
     whole = found.model_of(present, setting)
     for effect in present:
         rest = found.model_of(tuple(each for each in present if each != effect), setting) or found.tried[0]

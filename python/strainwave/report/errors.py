@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import HeldOut
 from strainwave.typeset import percent, quantity
 
 THIS_MODEL, LEAST_SQUARES, ZERO_MODEL = "this model", "plain least squares", "predicting the mean"

@@ -16,11 +16,6 @@ from strainwave.report.diagnose import diagnose_files
 from strainwave.report.identify_files import identify_files
 from strainwave.report.joints import joints_files
 from strainwave.report.orders import orders_files
-from strainwave.report.provenance import Provenance
-from strainwave.report.results_json import results_json
-from strainwave.report.rig import rig_report
-from strainwave.report.rig_files import angle_files, loop_files, results
-from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.tuning.compensate import Compensated
 
 Files = Mapping[str, str | bytes]
@@ -64,16 +59,3 @@ def _(result: Diagnosis) -> Files:
 @files_of.register
 def _(result: Compensated) -> Files:
     return compensate_files(result)
-
-
-@files_of.register
-def _(result: Evaluation) -> Files:
-    return evaluation_files(result, Provenance())
-
-
-def evaluation_files(found: Evaluation, provenance: Provenance) -> dict[str, str | bytes]:
-    """Return loops and angles of a test of torsion as tables, the numbers as JSON, and the page, by file name."""
-    files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-    files["results.json"] = results_json(results(found, provenance.date))
-    files["report.html"] = rig_report(found, provenance, list(files))
-    return files

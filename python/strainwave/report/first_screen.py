@@ -9,8 +9,9 @@ from typing import Any
 
 from strainwave.files.gear_set import GEAR_FILE
 from strainwave.identification.identify import Identified
-from strainwave.identification.results.file_result import FileResult, Subject
+from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.parameter_state import ParameterState
+from strainwave.identification.results.pictures import Subject
 from strainwave.report import identify_figures as plots
 from strainwave.report.parameter_names import EFFECTS, effect_of, name_of, name_of_path
 from strainwave.typeset import percent, quantity, uncertain_quantity

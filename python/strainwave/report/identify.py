@@ -12,7 +12,7 @@ import numpy as np
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import AGREEMENT
-from strainwave.identification.checks.shape import has_small_shape
+from strainwave.identification.checks.unexplained import has_small_shape
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
@@ -23,9 +23,9 @@ from strainwave.identification.results.combined_parameter import (
     difference,
     distance,
 )
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.parameter_state import UNDETERMINED
-from strainwave.identification.results.picture_plot import SIGMA_OF_95_PERCENT, residual_of
+from strainwave.identification.results.pictures import SIGMA_OF_95_PERCENT, Picture, residual_of
 from strainwave.messages import listed
 from strainwave.report import identify_figures as plots
 from strainwave.report.errors import held_out_rows

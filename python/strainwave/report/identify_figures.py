@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.results.combined_parameter import MAX_DISTANCE
-from strainwave.identification.results.file_result import FileResult, Picture, Subject
-from strainwave.identification.results.picture_plot import (
+from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.results.pictures import (
     SIGMA_OF_95_PERCENT,
+    Picture,
+    Subject,
     draw_measured,
     draw_picture,
     loop_points,

@@ -15,9 +15,8 @@ from typing import Any
 from strainwave.files import gear_file
 from strainwave.identification.checks.comparisons import AGREEMENT
 from strainwave.identification.identify import Identified
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, Check, FileEstimate, FileResult
 from strainwave.messages import listed, with_options
 from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of

@@ -9,8 +9,7 @@ from math import inf, tau
 import numpy as np
 
 from strainwave import Drive, arguments
-from strainwave.analysis.agreement import Agreement
-from strainwave.analysis.difference import Difference
+from strainwave.analysis.compare import Agreement, Difference
 from strainwave.analysis.error_bounds import positioning_error
 from strainwave.analysis.linear import linearise, modes
 from strainwave.analysis.strokes import stroke_within, strokes_apart

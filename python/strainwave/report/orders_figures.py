@@ -10,9 +10,8 @@ import numpy as np
 
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
-from strainwave.orders.pictures import draw_error, draw_spectrum
-from strainwave.orders.torque_ripple import Ripple
-from strainwave.orders.two_encoders import TransmissionError
+from strainwave.orders.torque_ripple import Ripple, draw_spectrum
+from strainwave.orders.two_encoders import TransmissionError, draw_error
 from strainwave.report import figures
 
 if TYPE_CHECKING:

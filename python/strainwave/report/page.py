@@ -17,13 +17,16 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 
-def render(template: str, content: Mapping[str, Any], provenance: Provenance | None = None) -> str:
-    """Return the HTML of a template of this folder; whatever is put into it is escaped, control characters too.
+def render(
+    template: str, content: Mapping[str, Any], provenance: Provenance | None = None, package: str = "strainwave.report"
+) -> str:
+    """Return the HTML of a template; whatever is put into it is escaped, control characters too.
 
     Args:
-        template: name of the file in templates/
+        template: name of the file in templates/ of the package, which extends those of this one
         content: what the template names
         provenance: command, date and files of the page, if they are to be shown
+        package: that has the template
 
     Raises:
         jinja2.UndefinedError: the template names what `content` does not have
@@ -34,16 +37,16 @@ def render(template: str, content: Mapping[str, Any], provenance: Provenance | N
         "light": figures.variables(LIGHT),
         "dark": figures.variables(DARK),
     }
-    return printable(_environment().get_template(template).render(of_every_page | dict(content)))
+    return printable(_environment(package).get_template(template).render(of_every_page | dict(content)))
 
 
 @cache
-def _environment() -> Environment:
-    """Return one environment for all pages, since it keeps the templates that it has compiled."""
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+def _environment(package: str) -> Environment:
+    """Return one environment for all pages of a package, since it keeps the templates that it has compiled."""
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     environment = Environment(
-        loader=PackageLoader("strainwave.report"),
+        loader=ChoiceLoader([PackageLoader(each) for each in dict.fromkeys((package, "strainwave.report"))]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,

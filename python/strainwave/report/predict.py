@@ -9,10 +9,8 @@ from importlib import metadata
 from typing import Any
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.results.changes import PartChange
-from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.held_out import error_in_words
-from strainwave.identification.results.prediction import Prediction
+from strainwave.identification.results.file_result import FileResult, error_in_words
+from strainwave.identification.results.prediction import PartChange, Prediction
 from strainwave.report.errors import LEAST_SQUARES, Row, error_rows
 from strainwave.report.identify_figures import file_figure
 from strainwave.report.identify_files import first_remarks
@@ -20,7 +18,7 @@ from strainwave.report.orders import line_numbers, line_words
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 from strainwave.typeset import number, percent, quantity, uncertain, uncertain_quantity
 
 MAX_LINES = 4  # of the spectrum of a residual, on a terminal

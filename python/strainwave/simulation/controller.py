@@ -16,11 +16,11 @@ from strainwave.messages import shortened
 from strainwave.native import kernels
 from strainwave.progress import Progress, by_count
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Initial, beginning_numbers
-from strainwave.simulation.memory import check_acting
 from strainwave.simulation.resolution import remedy, warn_of_bristles
 from strainwave.simulation.run import Course, Run, check_meaning, recorded_of
 from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.state import Initial, beginning_numbers
+from strainwave.simulation.time_grid import check_acting
 
 Array = NDArray[np.float64]
 
@@ -135,10 +135,12 @@ def simulate_controlled(
     course = Course.of(drive, excitation, recorded, dt, interval, actions)
     longest = course.time_grid.longest
     course.check_steps(0.0, excitation.first()[TEMPERATURE_PLACE])
-    given = excitation.over(course.time_grid.instants)
-    with by_count(progress, "simulating", len(given)) as shown:
-        outputs, state = _run(course, state, given, actions, controller, shown)
-    outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = _commanded(course, given)
+    inputs_of_steps = excitation.over(course.time_grid.instants)
+    with by_count(progress, "simulating", len(inputs_of_steps)) as shown:
+        outputs, state = _run(course, state, inputs_of_steps, actions, controller, shown)
+    # the command at the samples, in place of the actuation, which the drive itself took
+    commanded = np.append(inputs_of_steps[:1, 0, 0], inputs_of_steps[:, 2, 0])[course.time_grid.samples.view(np.bool_)]
+    outputs[[name == "command" for name in recorded] + [False] * (len(outputs) - len(recorded))] = commanded
     check_meaning(course.time, recorded, outputs, remedy(longest))
     course.check_steps(course.largest_twist(outputs), excitation.first()[TEMPERATURE_PLACE])
     warn_of_bristles(drive, longest)
@@ -151,34 +153,33 @@ def simulate_controlled(
 def _run(
     course: Course,
     state: Array,
-    given: Array,
+    inputs: Array,
     actions: Array,
     controller: Callable[[Observation], float],
     shown: Callable[[int], None] | None,
 ) -> tuple[Array, Array]:
-    """The outputs, shape (channels, samples), and the state at the end, from one action to the next.
-
-    Args:
-        given: command, input of the load and temperature of each step, shape (steps, 3, 6)
-        actions: as `_actions` gives them
-    """
+    """The outputs, shape (channels, samples), and the state at the end, under the inputs of each step, shape (steps, 3, 6)."""
     drive, instants = course.drive, course.time_grid.instants
-    steps, held, asked, acted = len(given), 0.0, 0.0, 0.0
+    steps, held, asked, acted = len(inputs), 0.0, 0.0, 0.0
     outputs, first = np.empty((0, 0)), 0
+    after = np.clip(np.searchsorted(instants, actions), 1, len(instants) - 1)
+    nearer = instants[after] - actions < actions - instants[after - 1]  # some actions coincide up to rounding
     kernels.prepare(drive, "simulate", steps)
-    for number, (begin, end) in enumerate(pairwise([*_places(instants, actions), steps])):
+    for number, (begin, end) in enumerate(pairwise([*np.where(nearer, after, after - 1).tolist(), steps])):
         if number % 2 == 1:
             held = asked
         else:
-            before = _core.measured(drive, state, _under(acted, given[begin, 0]))  # what there is just before the instant
-            asked = _asked(controller, float(instants[begin]), given[begin, 0], before)
+            before = _core.measured(drive, state, _under(acted, inputs[begin, 0]))  # what there is just before the instant
+            time, (command, rate) = float(instants[begin]), inputs[begin, 0, :2].tolist()
+            actuation = controller(Observation(time, command, rate, *before.tolist()))
+            asked = arguments.number(f"what the controller returns at t = {time:g} s", actuation)
         if begin == end:
             continue
         acted = held
         if first == 0:
-            outputs, first = course.beginning(state, _under(held, given[0, 0])), 1
+            outputs, first = course.beginning(state, _under(held, inputs[0, 0])), 1
         keep = course.time_grid.samples[begin + 1 : end + 1]
-        stretch, acting = instants[begin : end + 1], _under(held, given[begin:end])
+        stretch, acting = instants[begin : end + 1], _under(held, inputs[begin:end])
         method = _core.Method.exponential
         state = _core.simulate(drive, state, stretch, acting, keep, method, course.channels, outputs, first)
         first += int(np.count_nonzero(keep))
@@ -188,32 +189,12 @@ def _run(
     return outputs, state
 
 
-def _asked(controller: Callable[[Observation], float], time: float, given: Array, measured: Array) -> float:
-    """Return the actuation by the controller at an instant [s]."""
-    seen = Observation(time, float(given[0]), float(given[1]), *measured.tolist())
-    return arguments.number(f"what the controller returns at t = {time:g} s", controller(seen))
-
-
-def _commanded(course: Course, given: Array) -> Array:
-    """The command at the samples, in place of the actuation, which the drive itself took."""
-    commanded: Array = np.append(given[:1, 0, 0], given[:, 2, 0])[course.time_grid.samples.view(np.bool_)]
-    return commanded
-
-
 def _actions(duration: float, period: float, delay: float) -> Array:
     """Return the instants at which the controller is called and at which its result arrives, in turns [s]."""
     check_acting(duration, period)
     calls = period * np.arange(int(duration / period) + 1)
-    found: Array = np.stack([calls, calls + delay], axis=1).ravel()
-    return found[found < duration * (1.0 - 1e-12)]
-
-
-def _places(instants: Array, actions: Array) -> list[int]:
-    """The steps that begin at these actions: the nearest, as some coincide up to rounding."""
-    after = np.clip(np.searchsorted(instants, actions), 1, len(instants) - 1)
-    nearer = instants[after] - actions < actions - instants[after - 1]
-    found: list[int] = np.where(nearer, after, after - 1).tolist()
-    return found
+    actions: Array = np.stack([calls, calls + delay], axis=1).ravel()
+    return actions[actions < duration * (1.0 - 1e-12)]
 
 
 def _under(actuation: float, inputs: Array) -> Array:

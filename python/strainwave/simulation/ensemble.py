@@ -15,18 +15,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, _core, arguments
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.ensemble_folder import EnsembleFolder, fingerprint
+from strainwave.files.plots import MARGIN_HEIGHT, PANEL_HEIGHT, in_words
 from strainwave.files.recording import Recording
 from strainwave.files.writing import claiming, making
-from strainwave.messages import listed, one_line, quoted
+from strainwave.messages import in_a_sentence, listed, one_line, quoted
 from strainwave.native import device, kernels
 from strainwave.parameters import every, unknown
 from strainwave.presentation import Pictured, Row, counted
 from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Known, known as initial_of
 from strainwave.simulation.resolution import (
     FASTEST_ON_BRISTLES,
     MAX_STEP_PHASE,
@@ -38,6 +40,7 @@ from strainwave.simulation.resolution import (
 )
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import Output
+from strainwave.simulation.state import Known, known as initial_of
 from strainwave.simulation.threads import available_threads
 from strainwave.simulation.time_grid import TimeGrid
 
@@ -45,7 +48,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-WHOLE = {
+
+COUNTED_NAMES = {
     field["name"]
     for kinds in _core.families.values()
     for kind in kinds.values()
@@ -57,14 +61,17 @@ MAX_MEMBERS = 100_000_000  # of one call: their parameters alone take gigabytes
 MIN_POSITIVE = float(np.finfo(np.float32).tiny)  # the lower limit of what must be positive
 # Bytes of output that a part of the files holds at most, where one pack does not need more; of a GPU, which takes many at once.
 PART_BYTES, DEVICE_PART_BYTES = 64 << 20, 1 << 30
-
 Backend = Literal["cpu", "gpu", "gpu-float"]
+
 BACKENDS: tuple[Backend, ...] = get_args(Backend)
 RUN_MEMBERS: dict[Backend, Callable[..., Any]] = {
     "cpu": _core.simulate_many,
     "gpu": partial(device.simulate_many, scalar="double"),
     "gpu-float": partial(device.simulate_many, scalar="float"),
 }
+DRAWN_BANDS = ((0.05, 0.95, "90 % of members", 0.2), (0.25, 0.75, "50 % of members", 0.45))  # quantiles, label, opacity
+LEGEND_HEIGHT = 0.3  # inch
+MAX_DRAWN_INSTANTS = 2_000  # of more every n-th is drawn
 
 
 class EnsembleWarning(UserWarning):
@@ -149,8 +156,6 @@ class Ensemble(ComparedByFields, Pictured):
         >>> runs.plot(["torque"]).get_suptitle()
         'Torque of 2 members'
         """
-        from strainwave.simulation.ensemble_plot import ensemble_figure
-
         drawn = list(self.columns) if names is None else list(arguments.names("names", names))
         for name in drawn:
             self[name]
@@ -158,7 +163,7 @@ class Ensemble(ComparedByFields, Pictured):
             raise ValueError(f"names is empty; there are {listed(self.columns)}")
         if len(self.failures) == len(self):
             raise ValueError(f"none of the {len(self)} members has a result; the first failed: {self.failures[0]}")
-        return ensemble_figure(self.time, self.columns, self.units, drawn)
+        return ensemble_figure(self, drawn)
 
     @staticmethod
     def read(folder: str | Path) -> Ensemble:
@@ -316,7 +321,9 @@ class _Plan(ComparedByFields):
                 shown,
             )
         failures = self.failures(first, outputs, sound, twists, fastest, refusals)
-        _tell_of_bristles(self.time_grid.longest, on_bristles)
+        if stiff := np.count_nonzero(self.time_grid.longest * on_bristles > FASTEST_ON_BRISTLES):
+            words = too_stiff(self.time_grid.longest, float(on_bristles.max()))
+            warnings.warn(f"{stiff} members have {words}", EnsembleWarning, stacklevel=3)
         outputs[:, list(failures), :] = np.nan
         return Ensemble(
             self.time,
@@ -330,22 +337,20 @@ class _Plan(ComparedByFields):
         self, first: int, outputs: Array, ran: NDArray[np.bool_], twists: Array, fastest: Array, refusals: dict[int, str]
     ) -> dict[int, str]:
         """Return for each member from `first` on without a result the reason, in the words of `simulate`."""
-        found = dict(refusals)
-        coarse = fastest > MAX_STEP_PHASE / self.time_grid.longest
+        reasons, longest = dict(refusals), self.time_grid.longest
+        coarse = fastest > MAX_STEP_PHASE / longest
         at_rest = coarse & (twists == 0.0)  # such members are not run
         sound = at_rest | ran
-        for member in np.flatnonzero(~sound | coarse).tolist():
-            if member not in found and not sound[member]:
-                found[member] = diverged(self.time, list(self.recorded), outputs[:, member], remedy(self.time_grid.longest))
-            elif member not in found:
-                found[member] = self.too_coarse(first + member, float(twists[member]), float(fastest[member]))
-        return dict(sorted(found.items()))
-
-    def too_coarse(self, member: int, twist: float, fastest: float) -> str:
-        """Return the message that steps cannot follow a motion of this rate [rad/s] in a member."""
-        drive = self.drive.replace({path: float(column[member]) for path, column in self.parameters.items()})
         temperature = float(self.excitation.first()[TEMPERATURE_PLACE])
-        return too_coarse(self.time_grid.longest, twist, fastest, fastest_part(drive, twist, temperature, fastest))
+        for member in np.flatnonzero(~sound | coarse).tolist():
+            if member not in reasons and not sound[member]:
+                reasons[member] = diverged(self.time, list(self.recorded), outputs[:, member], remedy(longest))
+            elif member not in reasons:
+                numbers = {path: float(column[first + member]) for path, column in self.parameters.items()}
+                twist, rate = float(twists[member]), float(fastest[member])
+                part = fastest_part(self.drive.replace(numbers), twist, temperature, rate)
+                reasons[member] = too_coarse(longest, twist, rate, part)
+        return dict(sorted(reasons.items()))
 
 
 def simulate_many(
@@ -471,8 +476,10 @@ def simulate_to(
     excitation = Excitation.of(arguments.drive(drive), command, load_torque, temperature, inputs)
     plan = _Plan.of(drive, excitation, parameters, initial, dt, sample, record, threads, backend)
     folder, failures = Path(folder), dict[int, str]()
+    size = (PART_BYTES if plan.backend == "cpu" else DEVICE_PART_BYTES) // (8 * len(plan.recorded) * len(plan.time))
+    pack = _core.max_lanes * plan.threads  # a part has whole packs for every thread, and its outputs fit into memory
     with making(folder), claiming(folder), by_count(progress, "simulating", plan.members * plan.steps) as shown:
-        files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, _part_size(plan)).begin()
+        files = EnsembleFolder(folder, _asked(plan), plan.parameters, plan.units, max(pack, size - size % pack)).begin()
         for part in files.parts():
             if not files.has(part):
                 report = None if shown is None else lambda done, begun=part.first: shown(begun * plan.steps + done)
@@ -487,11 +494,14 @@ def simulate_to(
 def _asked(plan: _Plan) -> dict[str, str]:
     """All that an ensemble depends on, by the names of the arguments."""
     excitation = plan.excitation
+    load, temperature = (
+        signal if isinstance(signal, Scenario) else float(signal) for signal in (excitation.load, excitation.temperature)
+    )
     asked = {
         "drive": plan.drive,
         "command": excitation.command,
-        signals.load_input(plan.drive): _scenario(excitation.load),
-        "temperature": _scenario(excitation.temperature),
+        signals.load_input(plan.drive): load,
+        "temperature": temperature,
         "members": plan.members,
         "parameters": plan.parameters,
         "initial": plan.initial,
@@ -504,20 +514,16 @@ def _asked(plan: _Plan) -> dict[str, str]:
     return {name: fingerprint(value) for name, value in asked.items()}
 
 
-def _scenario(signal: Scenario | float) -> Scenario | float:
-    return signal if isinstance(signal, Scenario) else float(signal)
-
-
 def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[int], dict[str, Array]]:
     """The places of parameters among the drive's numbers, and their values, shape (members,) each."""
-    known = every(drive)
+    all_numbers = every(drive)
     arguments.mapping("parameters", parameters, '{"load.inertia": [0.01, 0.02]}')
     if not parameters:
         raise ValueError("parameters must name at least one number that the members differ in")
     values: dict[str, Array] = {}
     for path, column in parameters.items():
-        if path not in known:
-            raise unknown(str(path), known)
+        if path not in all_numbers:
+            raise unknown(str(path), all_numbers)
         values[path] = arguments.numbers(path, column)
         if values[path].ndim != 1 or len(values[path]) == 0:
             raise ValueError(f"{path} must have one value a member, shape (members,), not {values[path].shape}")
@@ -525,37 +531,20 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
             raise ValueError(
                 f"{path} has {len(values[path])} values; one call has at most {MAX_MEMBERS} members: call it for parts"
             )
-        number = known[path]
+        number = all_numbers[path]
         wrong = np.flatnonzero(~(np.isfinite(values[path]) & (values[path] >= number.low) & (values[path] <= number.high)))
         if wrong.size:
-            given = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
-            raise ValueError(f"{path} = {given} of member {wrong[0]} must lie in {_limits(number.low, number.high)}")
-        if path.rpartition(".")[2] in WHOLE and (broken := np.flatnonzero(values[path] % 1.0)).size:
+            low, high = number.low, number.high
+            lowest = "(-inf" if low == -np.inf else "(0" if low == MIN_POSITIVE else f"[{low:g}"
+            limits = lowest + (", inf)" if high == np.inf else f", {high:g}]")  # in the notation of the models
+            value = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
+            raise ValueError(f"{path} = {value} of member {wrong[0]} must lie in {limits}")
+        if path.rpartition(".")[2] in COUNTED_NAMES and (broken := np.flatnonzero(values[path] % 1.0)).size:
             raise ValueError(f"{path} = {values[path][broken[0]]:g} of member {broken[0]} must be a whole number")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())
         raise ValueError(f"all parameters must have as many values as there are members: {counts}")
-    return [known[path].number for path in values], values
-
-
-def _limits(low: float, high: float) -> str:
-    """Return a range in the notation of the models."""
-    lowest = "(-inf" if low == -np.inf else "(0" if low == MIN_POSITIVE else f"[{low:g}"
-    return lowest + (", inf)" if high == np.inf else f", {high:g}]")
-
-
-def _part_size(plan: _Plan) -> int:
-    """Members of a part, whose outputs fit into memory: whole packs for every thread."""
-    size = (PART_BYTES if plan.backend == "cpu" else DEVICE_PART_BYTES) // (8 * len(plan.recorded) * len(plan.time))
-    pack = _core.max_lanes * plan.threads
-    return max(pack, size - size % pack)
-
-
-def _tell_of_bristles(dt: float, vibrations: Array) -> None:
-    stiff = np.flatnonzero(dt * vibrations > FASTEST_ON_BRISTLES)
-    if stiff.size:
-        words = f"{stiff.size} members have {too_stiff(dt, float(vibrations.max()))}"
-        warnings.warn(words, EnsembleWarning, stacklevel=4)
+    return [all_numbers[path].number for path in values], values
 
 
 def _tell(failures: Mapping[int, str], members: int) -> None:
@@ -566,3 +555,25 @@ def _tell(failures: Mapping[int, str], members: int) -> None:
             EnsembleWarning,
             stacklevel=3,
         )
+
+
+def ensemble_figure(ensemble: Ensemble, names: Sequence[str]) -> Figure:
+    """Return the figure of some outputs, as `Ensemble.plot` describes it."""
+    time, columns, units = ensemble.time, ensemble.columns, ensemble.units
+    step = -(-len(time) // MAX_DRAWN_INSTANTS)
+    ran = ~np.isnan(columns[names[0]][:, 0])
+    title = f"{in_a_sentence([in_words(name) for name in names])} of {ran.sum()} members"
+    with marks.new_figure(MARGIN_HEIGHT + LEGEND_HEIGHT + PANEL_HEIGHT * len(names), title[0].upper() + title[1:]) as figure:
+        axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        for axis, name in zip(axes, names, strict=True):
+            values = columns[name][ran, ::step]
+            for low, high, label, opacity in DRAWN_BANDS:
+                edges = np.quantile(values, (low, high), axis=0)
+                style = {"facecolor": LIGHT["measured"], "alpha": opacity, "linewidth": 0.0}
+                axis.fill_between(time[::step], *edges, label=label, **style)
+            axis.plot(time[::step], np.median(values, axis=0), color=LIGHT["ink"], label="median")
+            axis.margins(x=0.01)
+            marks.label_axes(axis, in_words(name), units[name])
+        marks.label_abscissa(axes[-1], "time", "s")
+        marks.legend(figure, axes[0], below=True)
+    return figure

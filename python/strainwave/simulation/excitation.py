@@ -12,12 +12,23 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments
 from strainwave.messages import quoted, shortened
-from strainwave.simulation.memory import check_instants, check_room, room_for
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import load_input
-from strainwave.simulation.time_grid import BYTES_PER_INPUTS, BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, NEVER, TimeGrid, grid
+from strainwave.simulation.time_grid import (
+    BYTES_PER_INPUTS,
+    BYTES_PER_STEP,
+    LONG_RUN,
+    LONGER_STEPS,
+    NO_INSTANTS,
+    TimeGrid,
+    check_instants,
+    check_room,
+    grid,
+    room_for,
+)
 
 Array = NDArray[np.float64]
+
 ROOM_TEMPERATURE = 293.15  # K
 TEMPERATURE_PLACE = 4  # among the inputs
 MAX_ADAPTIVE_STEP = 5e-3  # s
@@ -47,30 +58,28 @@ class Excitation:
             raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
         if inputs is not None:
             arguments.mapping("inputs", inputs, '{"output_angle": 0.1}')
-        given = dict(inputs or {})
-        name = load_input(drive)
-        if name != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
-            raise ValueError(f"the load of this drive takes no load_torque, but {name}: give inputs={{{quoted(name)}: ...}}")
-        known = {name: load_torque if name == "load_torque" else 0.0, "temperature": temperature}
-        for each in given:
-            arguments.one_of("the name of an input", each, tuple(known))
-        known |= given
-        for each, signal in known.items():
+        load = load_input(drive)
+        if load != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
+            raise ValueError(f"the load of this drive takes no load_torque, but {load}: give inputs={{{quoted(load)}: ...}}")
+        signals = {load: load_torque if load == "load_torque" else 0.0, "temperature": temperature}
+        for name, signal in dict(inputs or {}).items():
+            signals[arguments.one_of("the name of an input", name, (load, "temperature"))] = signal
+        for name, signal in signals.items():
             if not isinstance(signal, Scenario | Real):
-                raise TypeError(f"{each} = {shortened(signal)} must be a number or a Scenario")
+                raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
             if isinstance(signal, Scenario) and signal.duration != command.duration:
-                raise ValueError(f"{each} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
+                raise ValueError(f"{name} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
             if not isinstance(signal, Scenario):
-                arguments.number(each, signal)
-        if not isinstance(known["temperature"], Scenario):
-            check_temperature(known["temperature"])
-        return cls(command, known[name], known["temperature"])
+                arguments.number(name, signal)
+        if not isinstance(signals["temperature"], Scenario):
+            check_temperature(signals["temperature"])
+        return cls(command, signals[load], signals["temperature"])
 
     @property
     def _scenarios(self) -> list[Scenario]:
         return [signal for signal in (self.command, self.load, self.temperature) if isinstance(signal, Scenario)]
 
-    def time_grid(self, dt: float, samples: float | Array | None, instants: Array = NEVER) -> TimeGrid:
+    def time_grid(self, dt: float, samples: float | Array | None, instants: Array = NO_INSTANTS) -> TimeGrid:
         """The steps that follow it, and end at `instants`, at which a controller acts."""
         breaks = np.concatenate([*(signal.breaks for signal in self._scenarios), instants])
         return TimeGrid.through(self.command.duration, dt, dt if samples is None else samples, breaks)
@@ -81,14 +90,10 @@ class Excitation:
         check_room("steps", self.command.duration / dt, BYTES_PER_STEP + BYTES_PER_INPUTS, LONG_RUN)
 
     def ends(self, instants: Array, most: int) -> Array:
-        """Return the instants at which adaptive steps must end [s].
+        """Return the instants at which adaptive steps must end [s]; refuse what takes more than `most` steps.
 
         They are the jumps of the inputs, `instants`, at which a controller acts, and so many more that no step is as long as a
         period of an input.
-
-        Raises:
-            ValueError: it takes more than `most` steps to come from one to the next
-            MemoryError: they are too many
         """
         duration = self.command.duration
         waves = [wave for signal in self._scenarios for wave in signal.waves]
@@ -103,11 +108,10 @@ class Excitation:
         check_room("steps", duration / longest + len(instants), BYTES_PER_END, LONG_RUN)
         regular = grid(longest, duration, 1e-9 * MAX_ADAPTIVE_STEP)
         ends = np.unique(np.concatenate([regular, instants, *(signal.breaks for signal in self._scenarios)]))
-        return (
-            ends[np.append(np.diff(ends) > 1e-9 * MAX_ADAPTIVE_STEP * (duration > MAX_ADAPTIVE_STEP), True)]
-            if len(instants)
-            else ends
-        )
+        if not len(instants):
+            return ends
+        apart = np.diff(ends) > 1e-9 * MAX_ADAPTIVE_STEP * (duration > MAX_ADAPTIVE_STEP)
+        return np.asarray(ends[np.append(apart, True)])
 
     def check_temperature(self, ends: Array) -> None:
         """Refuse a temperature that is not positive, at eight places between all `ends`."""
@@ -126,8 +130,7 @@ class Excitation:
 
     @cached_property
     def _first(self) -> Array:
-        start: Array = _core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0]
-        return start
+        return np.asarray(_core.inputs(*self.signals, np.array([0.0, self.command.duration]))[0, 0])
 
     def over(self, instants: Array) -> Array:
         """The same at the start, middle and end of each step between these instants [s], shape (n, 3, 6)."""
@@ -138,10 +141,10 @@ class Excitation:
         return inputs
 
 
-def _signal(given: Scenario | float) -> _core.Signal:
-    if isinstance(given, Scenario):
-        return given.signal
-    return _core.Signal(np.zeros(1), np.array([given], dtype=np.float64), np.zeros(1), np.empty(0))
+def _signal(value: Scenario | float) -> _core.Signal:
+    if isinstance(value, Scenario):
+        return value.signal
+    return _core.Signal(np.zeros(1), np.array([value], dtype=np.float64), np.zeros(1), np.empty(0))
 
 
 def check_temperature(lowest: float) -> None:

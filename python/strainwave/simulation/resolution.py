@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from decimal import ROUND_FLOOR, Context
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,20 +14,16 @@ from strainwave.messages import listed
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 Array = NDArray[np.float64]
+
 MAX_STEP_PHASE = 1.0  # rad: step times angular frequency of a drive's own motion
 FASTEST_ON_BRISTLES = 2.0  # rad: step times angular frequency of a shaft on its bristles, beyond which fixed steps may be wrong
-MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")
-LARGEST: float = _core.largest  # of all that is recorded
-
-
-def _meaningful(outputs: Array) -> NDArray[np.bool_]:
-    """Return a mask of the meaningful numbers of a run: neither not-a-number nor out of all bounds."""
-    return np.abs(outputs) <= LARGEST
+MOTOR_FAULTS = ("phase_resistance_excess", "dead_time_voltage")  # that let currents decay faster
+LARGEST_OUTPUT: float = _core.largest  # of all that is recorded
 
 
 def diverged(time: Array, names: Sequence[str], outputs: Array, what_to_do: str) -> str:
     """Return the message that names the first output without meaning and its time; outputs of shape (names, samples)."""
-    sound = _meaningful(outputs)
+    sound = np.abs(outputs) <= LARGEST_OUTPUT  # neither not-a-number nor out of all bounds
     where = int(np.argmin(sound.all(axis=0)))
     wrong = [name for name, is_sound in zip(names, sound[:, where], strict=True) if not is_sound]
     place = f" at t = {time[where]:.6g} s ({listed(wrong)})" if wrong else ""
@@ -56,20 +51,16 @@ def fine_enough(drive: Drive, dt: float, shortest: float) -> float:
 
 def fastest_part(drive: Drive, twist: float, temperature: float, fastest: float) -> str:
     """Return the part of a drive that causes this rate [rad/s]: the one without which the drive is slower."""
-    plain = Drive()
+    plain, motor = Drive(), drive.motor
+    healthy = motor.replace(**{name: 0.0 for name in MOTOR_FAULTS if hasattr(motor, name)})
     without = {
         "a body within its gear": drive.replace(gear=drive.gear.replace(structure=plain.gear.structure)),
         "a sensor": drive.replace(sensors=plain.sensors),
         "what its controller filters": drive.replace(control=plain.control),
-        "a fault of its motor (an uneven phase, dead time)": drive.replace(motor=_healthy(drive.motor)),
+        "a fault of its motor (an uneven phase, dead time)": drive.replace(motor=healthy),
     }
     slower = (words for words, rest in without.items() if _core.max_rate(rest, twist, temperature) < fastest)
     return next(slower, "its own motion")
-
-
-def _healthy(motor: Any) -> Any:
-    """Return the motor without the faults that let its currents decay faster."""
-    return motor.replace(**{name: 0.0 for name in MOTOR_FAULTS if hasattr(motor, name)})
 
 
 def too_coarse(dt: float, twist: float, fastest: float, part: str) -> str:

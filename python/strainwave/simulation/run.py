@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from typing import Any, Literal, NamedTuple, get_args
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,18 +18,38 @@ from strainwave.native import kernels
 from strainwave.progress import Progress, by_count
 from strainwave.simulation import signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE, TEMPERATURE_PLACE, Excitation
-from strainwave.simulation.initial import Initial, beginning_numbers, known
-from strainwave.simulation.memory import check_instants, check_room, room_for
-from strainwave.simulation.resolution import FASTEST_ON_BRISTLES, LARGEST, check_resolution, diverged, remedy, warn_of_bristles
+from strainwave.simulation.resolution import (
+    FASTEST_ON_BRISTLES,
+    LARGEST_OUTPUT,
+    check_resolution,
+    diverged,
+    remedy,
+    warn_of_bristles,
+)
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.signals import TWIST, Output
-from strainwave.simulation.state import State
+from strainwave.simulation.signals import TWIST_CHANNEL, Output
+from strainwave.simulation.state import Initial, State, beginning_numbers, known
 from strainwave.simulation.threads import StepCounter, side_by_side
-from strainwave.simulation.time_grid import BYTES_PER_STEP, LONG_RUN, LONGER_STEPS, STEPS_PER_CHUNK, TimeGrid, grid
+from strainwave.simulation.time_grid import (
+    BYTES_PER_STEP,
+    LONG_RUN,
+    LONGER_STEPS,
+    STEPS_PER_CHUNK,
+    TimeGrid,
+    check_instants,
+    check_room,
+    grid,
+    room_for,
+)
 
 Array = NDArray[np.float64]
 Method = Literal["exponential", "moreau_jean", "rosenbrock"]
-METHODS: tuple[Method, ...] = get_args(Method)
+
+METHOD_WORDS: dict[Method, str] = {
+    "exponential": "exponential Runge-Kutta",
+    "moreau_jean": "Moreau-Jean time-stepping",
+    "rosenbrock": "Rosenbrock W-method",
+}
 SAMPLE_LESS = "sample less often, or record fewer outputs"
 MAX_STEPS_PER_FIXED_STEP = 1000  # adaptive steps of bristles that are too fast for fixed ones
 MAX_STEPS_OF_SHORT_RUN = 100_000  # adaptive steps
@@ -54,7 +74,7 @@ class Run(Recording):
     method: str
 
     def __init__(self, columns: Mapping[str, Array], units: Mapping[str, str], end: State, method: str) -> None:
-        super().__init__(columns, units, title=_title(method))
+        super().__init__(columns, units, title=f"{GENERATED_TITLE}: {method}")
         self._came_about(end, method)
 
     @classmethod
@@ -73,7 +93,7 @@ class Run(Recording):
         if unit is not None and "command" in units:
             units["command"] = unit
         run = object.__new__(cls)
-        run._hold(columns_of(time, recorded, outputs), units, _title(method))
+        run._hold(columns_of(time, recorded, outputs), units, f"{GENERATED_TITLE}: {method}")
         run._came_about(end, method)
         return run
 
@@ -83,10 +103,6 @@ class Run(Recording):
     def _came_about(self, end: State, method: str) -> None:
         object.__setattr__(self, "end", end)
         object.__setattr__(self, "method", method)
-
-
-def _title(method: str) -> str:
-    return f"{GENERATED_TITLE}: {method}"
 
 
 def simulate(
@@ -160,7 +176,7 @@ def simulate(
     'exponential Runge-Kutta, steps of 0.0002 s'
     """
     if method is not None:
-        arguments.one_of("method", method, METHODS)
+        arguments.one_of("method", method, METHOD_WORDS)
     model, drive = drive, drive_of(drive)
     dt = arguments.seconds("dt", dt)
     interval = dt if sample is None else arguments.seconds("sample", sample)
@@ -224,11 +240,7 @@ class Course(NamedTuple):
     def of(
         cls, drive: Drive, excitation: Excitation, recorded: Mapping[str, Output], dt: float, interval: float, instants: Array
     ) -> Course:
-        """Return the course with steps of at most `dt`, samples at `interval` [s], and steps that also end at `instants` [s].
-
-        Raises:
-            ValueError, MemoryError: the steps or the samples are too many
-        """
+        """Return the course with steps of at most `dt`, samples at `interval` and steps that also end at `instants` [s]."""
         channels = channels_of(recorded)
         duration = excitation.command.duration
         check_instants(duration, dt, LONGER_STEPS)
@@ -246,7 +258,7 @@ class Course(NamedTuple):
         check_resolution(self.drive, self.time_grid.longest, twist, temperature)
 
     def largest_twist(self, outputs: Array) -> float:
-        return _largest_twist(outputs[self.channels.index(TWIST)])
+        return float(np.abs(outputs[self.channels.index(TWIST_CHANNEL)]).max())
 
     def run(self, outputs: Array, state: Array, method: str, unit: str | None = None) -> Run:
         """The run that ends in a state, with a unit of the command where it is not the drive's own."""
@@ -267,8 +279,8 @@ def check_samples(duration: float, interval: float, columns: float) -> None:
 
 def channels_of(recorded: Mapping[str, Output]) -> list[int]:
     """Return the channels of the recorded outputs and of the twist, which determines whether steps were short enough."""
-    found = [each.channel for each in recorded.values()]
-    return found if TWIST in found else [*found, TWIST]
+    channels = [output.channel for output in recorded.values()]
+    return channels if TWIST_CHANNEL in channels else [*channels, TWIST_CHANNEL]
 
 
 def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int], samples: int) -> Array:
@@ -283,16 +295,9 @@ def beginning(drive: Drive, state: Array, first: Array, channels: Sequence[int],
     return outputs
 
 
-_NAMED: dict[Method, str] = {
-    "exponential": "exponential Runge-Kutta",
-    "moreau_jean": "Moreau-Jean time-stepping",
-    "rosenbrock": "Rosenbrock W-method",
-}
-
-
 def _named(method: Method, drive: Drive) -> str:
     """A method in words, as it is where friction of the drive holds its place at rest or does not."""
-    return _NAMED[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
+    return METHOD_WORDS[method] + (", cut at events" if _core.has_events(drive) and method != "moreau_jean" else "")
 
 
 def simulate_adaptively(
@@ -382,14 +387,9 @@ def differentiate(
     samples: float | Array,
     initial: Mapping[str, float] | None = None,
 ) -> tuple[Recording, Array]:
-    """A run and its derivatives by numbered parameters of the drive, exact to rounding (dual numbers).
+    """A run and its derivatives, shape (numbers, columns without time, n), by parameters, exact to rounding (dual numbers).
 
-    Args:
-        numbers: places in `_core.parameters(drive)`
-        samples: interval of the samples, or the samples [s], beginning with 0
-
-    Returns:
-        the recording with n samples, and derivatives, shape (len(numbers), columns without time, n)
+    The parameters are places in `_core.parameters(drive)`. Samples are their interval, or all of them, from 0 on [s].
     """
     temperature = excitation.first()[TEMPERATURE_PLACE]
     beginning_numbers(drive, initial, excitation.first())  # refuses what is no beginning
@@ -419,7 +419,8 @@ def recording(
     """Return the recording of a checked run that began at a temperature [K]; outputs (recorded, samples) contain the twist."""
     time = time_grid.times
     check_meaning(time, recorded, outputs, remedy(time_grid.longest))
-    check_resolution(drive, time_grid.longest, _largest_twist(outputs[list(recorded).index("twist")]), temperature)
+    twist = float(np.abs(outputs[list(recorded).index("twist")]).max())
+    check_resolution(drive, time_grid.longest, twist, temperature)
     units = signals.units(drive, recorded.values())
     return Recording(columns_of(time, recorded, outputs), units, title=GENERATED_TITLE)
 
@@ -432,7 +433,7 @@ def columns_of(time: Array, recorded: Mapping[str, Output], outputs: Array) -> d
 
 
 def check_meaning(time: Array, recorded: Mapping[str, Output], outputs: Array, what_to_do: str) -> None:
-    if not (outputs.max() <= LARGEST and outputs.min() >= -LARGEST):
+    if not (outputs.max() <= LARGEST_OUTPUT and outputs.min() >= -LARGEST_OUTPUT):
         names = [*recorded, "twist"][: len(outputs)]
         raise FloatingPointError(diverged(time, names, outputs, what_to_do))
 
@@ -443,7 +444,3 @@ def _finite(end: State, what_to_do: str) -> State:
         wrong = [name for name, number in zip(end, end.numbers, strict=True) if not np.isfinite(number)]
         raise FloatingPointError(f"the simulation diverged ({listed(wrong)} at the end); {what_to_do}")
     return end
-
-
-def _largest_twist(twist: Array) -> float:
-    return float(np.abs(twist).max())

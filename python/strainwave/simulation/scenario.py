@@ -28,7 +28,7 @@ from strainwave import _core, arguments, typeset
 from strainwave.files.recording import Recording
 from strainwave.messages import shortened
 from strainwave.presentation import PLAIN_DIGITS, Pictured, Row, counted
-from strainwave.simulation.memory import check_instants, room_for
+from strainwave.simulation.time_grid import check_instants, room_for
 
 __all__ = [
     "Scenario",
@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
 DRAWN_POINTS = 2000  # of a command
 MAX_PULSES = 1e6  # of a pulse train
 MIN_DURATION = 1e-30  # s: so short that its reciprocal and its square are still finite

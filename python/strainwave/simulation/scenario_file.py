@@ -29,13 +29,13 @@ from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
 from strainwave.presentation import Presented
 from strainwave.simulation import scenario
-from strainwave.simulation.initial import QUANTITIES
 from strainwave.simulation.run import Run, simulate, simulate_adaptively
 from strainwave.simulation.scenario import Scenario, Wave
 from strainwave.simulation.signals import command_unit
+from strainwave.simulation.state import INITIAL_QUANTITIES
 
-WRITTEN = '{ value = 5.0, unit = "deg" }'
-TEXTS = ("name", "note")
+UNIT_EXAMPLE = '{ value = 5.0, unit = "deg" }'
+TEXT_KEYS = ("name", "note")
 
 
 def pieces(
@@ -60,15 +60,15 @@ def pieces(
     >>> float(pieces([0.0, 1.0], [0.0, 2.0], [1.0, 0.0], duration=2.0).value(0.5))
     0.5
     """
-    given = {"amplitude": wave_amplitude, "frequency": wave_frequency, "sweep": wave_sweep, "phase": wave_phase}
-    columns = [arguments.numbers(f"wave_{name}", each) for name, each in given.items()]
-    if columns[0].ndim != 1 or any(each.shape != columns[0].shape for each in columns):
+    numbers = {"amplitude": wave_amplitude, "frequency": wave_frequency, "sweep": wave_sweep, "phase": wave_phase}
+    columns = [arguments.numbers(f"wave_{name}", values) for name, values in numbers.items()]
+    if columns[0].ndim != 1 or any(column.shape != columns[0].shape for column in columns):
         raise ValueError("wave_amplitude, wave_frequency, wave_sweep and wave_phase must be lists of equally many numbers")
-    waves = tuple(Wave(*each) for each in np.column_stack(columns).tolist())
+    waves = tuple(Wave(*wave) for wave in np.column_stack(columns).tolist())
     return Scenario(duration, np.asarray(start), np.asarray(level), np.asarray(slope), waves)
 
 
-KINDS: dict[str, Callable[..., Scenario]] = {
+SIGNAL_KINDS: dict[str, Callable[..., Scenario]] = {
     each.__name__: each
     for each in (
         scenario.constant,
@@ -81,11 +81,11 @@ KINDS: dict[str, Callable[..., Scenario]] = {
         pieces,
     )
 }
-SECONDS = ("start", "period", "width", "time")
-HERTZ = ("frequency", "start_frequency", "stop_frequency", "wave_frequency")
-RADIANS = ("phase", "wave_phase")
-RATES = ("rate", "slope")  # of the signal per second; the unit of all arguments not named here is that of the signal
-DIFFERENCES = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC more are 5 K, not 278.15 K
+IN_SECONDS = ("start", "period", "width", "time")
+IN_HERTZ = ("frequency", "start_frequency", "stop_frequency", "wave_frequency")
+IN_RADIANS = ("phase", "wave_phase")
+PER_SECOND = ("rate", "slope")  # of the signal per second; the unit of all arguments not named here is that of the signal
+DIFFERENCE_ARGUMENTS = ("amplitude", "wave_amplitude")  # no values of the signal: 5 degC more are 5 K, not 278.15 K
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class ScenarioFile(Presented):
             else:
                 arguments.number(name, signal)
         for name, value in self.initial.items():
-            arguments.number(arguments.one_of("the name of a quantity in initial", name, QUANTITIES), value)
+            arguments.number(arguments.one_of("the name of a quantity in initial", name, INITIAL_QUANTITIES), value)
         if arguments.text("name", self.name):
             check_line("name", self.name)
         arguments.text("note", self.note)
@@ -278,7 +278,7 @@ def _from_columns(points: Recording, units: Mapping[str, str]) -> ScenarioFile:
 
 def _from_toml(content: Mapping[str, Any], units: Mapping[str, str]) -> ScenarioFile:
     for key in content:
-        _check_known(key, (*TEXTS, "duration", *units, "initial"))
+        _check_known(key, (*TEXT_KEYS, "duration", *units, "initial"))
     if "duration" not in content:
         raise ValueError("duration is missing; write duration = 2.0, in s")
     if "command" not in content:
@@ -288,24 +288,24 @@ def _from_toml(content: Mapping[str, Any], units: Mapping[str, str]) -> Scenario
     command = signals.pop("command")
     if not isinstance(command, Scenario):
         command = scenario.constant(command, duration)
-    texts = {key: arguments.text(key, content[key]) for key in TEXTS if key in content}
+    texts = {key: arguments.text(key, content[key]) for key in TEXT_KEYS if key in content}
     return ScenarioFile(command, signals, _initial(content.get("initial", {})), **texts)
 
 
-def _initial(given: Any) -> dict[str, float]:
-    if not isinstance(given, dict):
-        raise ValueError(f"initial = {shortened(given)} must be a table; write [initial] with output_angle = {WRITTEN}")
+def _initial(table: Any) -> dict[str, float]:
+    if not isinstance(table, dict):
+        raise ValueError(f"initial = {shortened(table)} must be a table; write [initial] with output_angle = {UNIT_EXAMPLE}")
     with at("initial:"):
-        for name in given:
-            _check_known(name, QUANTITIES)
-    return {name: _number(f"initial.{name}", value, QUANTITIES[name][1]) for name, value in given.items()}
+        for name in table:
+            _check_known(name, INITIAL_QUANTITIES)
+    return {name: _number(f"initial.{name}", value, INITIAL_QUANTITIES[name][1]) for name, value in table.items()}
 
 
-def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | float:
+def _signal(place: str, entry: Any, duration: float, unit: str) -> Scenario | float:
     """A number that stays, or the sum of the signals that a file lists at one place."""
-    if not isinstance(given, list) and not _has_kind(given):
-        return _number(place, given, unit)
-    each = given if isinstance(given, list) else [given]
+    if not isinstance(entry, list) and not _has_kind(entry):
+        return _number(place, entry, unit)
+    each = entry if isinstance(entry, list) else [entry]
     if not each:
         raise ValueError(f"{place} is empty; write [{place}] with kind = {_kinds()}")
     places = [place] if len(each) == 1 else [f"{place}[{i}]" for i in range(len(each))]
@@ -313,59 +313,59 @@ def _signal(place: str, given: Any, duration: float, unit: str) -> Scenario | fl
     return reduce(add, [_piece(place, piece, duration, unit, first=i == 0) for i, (place, piece) in pairs])
 
 
-def _has_kind(given: Any) -> bool:
-    return isinstance(given, dict) and ("kind" in given or "value" not in given)
+def _has_kind(entry: Any) -> bool:
+    return isinstance(entry, dict) and ("kind" in entry or "value" not in entry)
 
 
 def _kinds() -> str:
-    return " or ".join(map(quoted, KINDS))
+    return " or ".join(map(quoted, SIGNAL_KINDS))
 
 
-def _piece(place: str, given: Any, duration: float, unit: str, first: bool) -> Scenario:
+def _piece(place: str, entry: Any, duration: float, unit: str, first: bool) -> Scenario:
     """One of the signals that are added; but for the first, values in a unit with a zero of its own make no sense."""
-    if not _has_kind(given):
-        raise ValueError(f"{place} = {shortened(given)} must be a table with kind = {_kinds()}")
-    if (kind := given.get("kind")) is None:
+    if not _has_kind(entry):
+        raise ValueError(f"{place} = {shortened(entry)} must be a table with kind = {_kinds()}")
+    if (kind := entry.get("kind")) is None:
         raise ValueError(f"{place}.kind is missing; write kind = {_kinds()}")
-    if not isinstance(kind, str) or kind not in KINDS:
-        near = get_close_matches(str(kind).lower(), KINDS, n=1)
+    if not isinstance(kind, str) or kind not in SIGNAL_KINDS:
+        near = get_close_matches(str(kind).lower(), SIGNAL_KINDS, n=1)
         hint = f"{'; near it is ' * bool(near)}{''.join(near)}; write kind = {_kinds()}"
         raise ValueError(f"{place}.kind = {shortened(kind)} is not known{hint}")
-    known = inspect.signature(KINDS[kind]).parameters
-    entries = {key: value for key, value in given.items() if key != "kind"}
+    arguments_of_kind = inspect.signature(SIGNAL_KINDS[kind]).parameters
+    entries = {key: value for key, value in entry.items() if key != "kind"}
     with at(f"{place}: {kind}:"):
         for key in entries:
-            _check_known(key, [name for name in known if name != "duration"])
-    needed = [name for name, each in known.items() if each.default is each.empty and name != "duration"]
+            _check_known(key, [name for name in arguments_of_kind if name != "duration"])
+    needed = [name for name, each in arguments_of_kind.items() if each.default is each.empty and name != "duration"]
     if missing := [name for name in needed if name not in entries]:
         raise ValueError(f"{place}.{missing[0]} is missing; {kind} needs {listed(needed)}")
     numbers = {
-        key: _numbers(f"{place}.{key}", value, _unit_of(key, unit), first and key not in DIFFERENCES)
+        key: _numbers(f"{place}.{key}", value, _unit_of(key, unit), first and key not in DIFFERENCE_ARGUMENTS)
         for key, value in entries.items()
     }
     with at(f"{place}:"):
-        made = KINDS[kind](**numbers, **({"duration": duration} if "duration" in known else {}))
+        made = SIGNAL_KINDS[kind](**numbers, **({"duration": duration} if "duration" in arguments_of_kind else {}))
     _check_duration(place, made, duration)
     return made
 
 
 def _unit_of(argument: str, unit: str) -> str:
     """The unit of an argument of a signal in this unit."""
-    if argument in RATES:
+    if argument in PER_SECOND:
         return f"{unit}/s"
-    named = {"s": SECONDS, "Hz": HERTZ, "rad": RADIANS, "Hz/s": ("wave_sweep",)}
+    named = {"s": IN_SECONDS, "Hz": IN_HERTZ, "rad": IN_RADIANS, "Hz/s": ("wave_sweep",)}
     return next((own for own, names in named.items() if argument in names), unit)
 
 
-def _number(place: str, given: Any, unit: str) -> float:
-    if isinstance(found := _numbers(place, given, unit), list):
-        raise ValueError(f"{place} = {shortened(given)} must be one number")
-    return float(found)
+def _number(place: str, entry: Any, unit: str) -> float:
+    if isinstance(number := _numbers(place, entry, unit), list):
+        raise ValueError(f"{place} = {shortened(entry)} must be one number")
+    return float(number)
 
 
-def _numbers(place: str, given: Any, unit: str, absolute: bool = True) -> Any:
+def _numbers(place: str, entry: Any, unit: str, absolute: bool = True) -> Any:
     """A number or a list of numbers, in this unit; a file may write them in another."""
-    value, written = _with_unit(place, given) if isinstance(given, dict) else (given, unit)
+    value, written = _with_unit(place, entry) if isinstance(entry, dict) else (entry, unit)
     numbers = [arguments.number(place, each) for each in (value if isinstance(value, list) else [value])]
     with at(f"{place}:"):
         if not absolute and _in_unit(0.0, written, unit) != 0.0:
@@ -381,35 +381,38 @@ def _in_unit(values: Any, written: str, unit: str) -> Any:
         raise ValueError(f"{error}; this drive takes {unit}") from None
 
 
-def _with_unit(place: str, given: dict[str, Any]) -> tuple[Any, str]:
+def _with_unit(place: str, table: dict[str, Any]) -> tuple[Any, str]:
     with at(f"{place}:"):
-        for key in given:
+        for key in table:
             _check_known(key, ("value", "unit"))
-    if missing := [key for key in ("value", "unit") if key not in given]:
-        raise ValueError(f"{place}.{missing[0]} is missing; write {WRITTEN}, or a number in SI units")
-    return given["value"], arguments.text(f"{place}.unit", given["unit"])
+    if missing := [key for key in ("value", "unit") if key not in table]:
+        raise ValueError(f"{place}.{missing[0]} is missing; write {UNIT_EXAMPLE}, or a number in SI units")
+    return table["value"], arguments.text(f"{place}.unit", table["unit"])
 
 
 # Writing
 
 
-def _written(given: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
+def _written(scenario_file: ScenarioFile, units: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of the file: texts and numbers before tables."""
-    content: dict[str, Any] = {key: text for key in TEXTS if (text := getattr(given, key))}
-    content["duration"] = _quantity(given.command.duration, "s")
-    signals = {"command": given.command, **given.inputs}
+    content: dict[str, Any] = {key: text for key in TEXT_KEYS if (text := getattr(scenario_file, key))}
+    content["duration"] = _quantity(scenario_file.command.duration, "s")
+    signals = {"command": scenario_file.command, **scenario_file.inputs}
     constant = {name: value for name, value in signals.items() if not isinstance(value, Scenario)}
     content |= {name: _quantity(float(value), units[name]) for name, value in constant.items()}
     for name, signal in signals.items():
-        if isinstance(signal, Scenario):
-            content[name] = [_with_units(kind, entries, units[name]) for kind, entries in _terms(signal)]
-    if given.initial:
-        content["initial"] = {name: _quantity(float(value), QUANTITIES[name][1]) for name, value in given.initial.items()}
+        if isinstance(signal, Scenario):  # as the kinds whose sum it is to the last bit, else as its pieces
+            terms = _line(signal) + [_wave(wave, signal.duration) for wave in signal.waves]
+            terms = terms if _sum_of(terms, signal.duration) == signal else [_pieces(signal)]
+            content[name] = [
+                {"kind": kind} | {key: _quantity(value, _unit_of(key, units[name])) for key, value in entries.items()}
+                for kind, entries in terms
+            ]
+    if scenario_file.initial:
+        content["initial"] = {
+            name: _quantity(float(value), INITIAL_QUANTITIES[name][1]) for name, value in scenario_file.initial.items()
+        }
     return content
-
-
-def _with_units(kind: str, entries: Mapping[str, Any], unit: str) -> dict[str, Any]:
-    return {"kind": kind} | {key: _quantity(value, _unit_of(key, unit)) for key, value in entries.items()}
 
 
 def _quantity(value: float | list[float], unit: str) -> Any:
@@ -421,12 +424,6 @@ def _quantity(value: float | list[float], unit: str) -> Any:
 
 
 Terms = list[tuple[str, dict[str, Any]]]  # kinds, each with its arguments
-
-
-def _terms(signal: Scenario) -> Terms:
-    """A signal as the kinds whose sum it is to the last bit, else as its pieces."""
-    terms = _line(signal) + [_wave(each, signal.duration) for each in signal.waves]
-    return terms if _sum_of(terms, signal.duration) == signal else [_pieces(signal)]
 
 
 def _line(signal: Scenario) -> Terms:
@@ -460,6 +457,6 @@ def _pieces(signal: Scenario) -> tuple[str, dict[str, Any]]:
 
 def _sum_of(terms: Terms, duration: float) -> Scenario | None:
     try:
-        return reduce(add, [KINDS[kind](**entries, duration=duration) for kind, entries in terms])
+        return reduce(add, [SIGNAL_KINDS[kind](**entries, duration=duration) for kind, entries in terms])
     except ValueError:  # what a kind refuses, as a wave of negative frequency
         return None

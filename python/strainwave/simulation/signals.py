@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core, arguments
 from strainwave.messages import shortened
-from strainwave.simulation.memory import check_acting
+from strainwave.simulation.time_grid import check_acting
 
 Array = NDArray[np.float64]
 
@@ -59,16 +59,11 @@ def any_of(kind: Any) -> Any:
     return kind(**{field["name"]: field["default"] for field in kind.fields if field["required"]})
 
 
-TWIST = outputs(Drive())["twist"].channel
+TWIST_CHANNEL = outputs(Drive())["twist"].channel
 
 
 def chosen(drive: Drive, record: Sequence[str]) -> Mapping[str, Output]:
-    """The outputs that `record` names, in its order: each by its name, or with that of its part in front.
-
-    Raises:
-        TypeError: `record` is no list of names
-        ValueError: it is empty, or names what this drive does not show
-    """
+    """The outputs that `record` names, in its order: each by its name, or with that of its part in front."""
     names = arguments.names("record", record)
     known = outputs(drive)
     paths = dict(known) | {each.path: each for each in known.values()}
@@ -119,11 +114,7 @@ def _load_input_of(kind: type[Any]) -> str:
 
 
 def instants(drive: Drive, state: Array, duration: float) -> Array:
-    """Return the instants at which a sampled controller acts within `duration` [s]; none for a continuous one.
-
-    Raises:
-        ValueError, MemoryError: they are too many
-    """
+    """Return the instants at which a sampled controller acts within `duration` [s]; none for a continuous one."""
     first, period, delay = _core.schedule(drive, state)
     if period == 0.0:
         return np.empty(0)
@@ -132,17 +123,11 @@ def instants(drive: Drive, state: Array, duration: float) -> Array:
     samples = period * (np.float64(first) / period + np.arange(int(max(duration - first, 0.0) / period) + 1))
     given = np.concatenate([[first - period + delay], samples + delay])
     acting = np.sort(np.concatenate([samples, given[given > 1e-9 * period]]))
-    found: Array = acting[acting < duration]
-    return found
+    return np.asarray(acting[acting < duration])
 
 
 def check_continuous(drive: Drive, what: str) -> None:
-    """Refuse a drive that is not one system of differential equations, of which `what` is asked.
-
-    Raises:
-        ValueError: its controller acts at instants only, its load prescribes the motion of the output shaft or brakes it,
-            it warms up, its energy is measured, or a sensor has noise
-    """
+    """Refuse a drive that is not one system of differential equations, of which `what` is asked."""
     if _core.schedule(drive, drive.rest().numbers)[1] > 0.0:
         raise ValueError(
             f"{what} needs a controller that acts all the time; this one is sampled. "

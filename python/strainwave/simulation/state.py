@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, _core
+from strainwave import Drive, _core, arguments
 from strainwave.messages import listed, shortened
 from strainwave.presentation import Presented, Row
+from strainwave.simulation.signals import load_input, outputs
 
 Array = NDArray[np.float64]
+Known = tuple[list[int], Array]  # the numbers of quantities, and their values, shape (quantities, members)
+
+INITIAL_QUANTITIES = {name: (number, unit) for number, (name, unit, _) in enumerate(_core.quantities)}
 
 
 class State(Presented, Mapping[str, float]):
@@ -144,10 +148,10 @@ class StateLayout:
 
     def friction(self) -> Array:
         """1 for each continuous number of friction, 0 for the others; shape (count, 1)."""
-        found = np.zeros((self.count, 1))
+        mask = np.zeros((self.count, 1))
         for place in ("friction_input", "friction_mesh", "friction_output"):
-            found[self.places[place]] = 1.0
-        return found
+            mask[self.places[place]] = 1.0
+        return mask
 
 
 def same_shape(one: Drive, other: Drive) -> bool:
@@ -156,12 +160,7 @@ def same_shape(one: Drive, other: Drive) -> bool:
 
 
 def start_of(drive: Drive, state: object, name: str = "initial") -> State:
-    """A state given as argument `name`, if it is one of this drive.
-
-    Raises:
-        TypeError: it is no state
-        ValueError: it is a state of a drive with other models
-    """
+    """A state given as argument `name`, if it is one of this drive."""
     if not isinstance(state, State):
         raise TypeError(
             f"{name} = {shortened(state)} must be a state of a drive, as `end` of a run or sw.analysis.equilibrium(...) is one"
@@ -175,3 +174,60 @@ def start_of(drive: Drive, state: object, name: str = "initial") -> State:
             "begin with rest() of this drive"
         )
     return state if state.drive is drive else State.of(drive, state.numbers)
+
+
+Initial: TypeAlias = State | Mapping[str, float]  # what a run begins with
+
+
+def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 1) -> Known | None:
+    """The quantities that `initial` names, as the core takes them; None for a start at rest.
+
+    Where the load prescribes the motion of the output shaft a run never begins at rest, but where that motion does.
+    """
+    prescribed = load_input(drive) == "output_angle"
+    if initial is None and not prescribed:
+        return None
+    if initial is not None:
+        arguments.mapping("initial", initial, '{"output_angle": 0.3, "input_speed": 5.0}')
+    values = {name: _value(str(name), value, members) for name, value in (initial or {}).items()}
+    for name in values:
+        arguments.one_of("the name of a quantity in initial", name, tuple(INITIAL_QUANTITIES))
+    _check_together(drive, set(values), prescribed)
+    rows = [np.broadcast_to(value, members) for value in values.values()]
+    return [INITIAL_QUANTITIES[name][0] for name in values], np.array(rows, dtype=np.float64).reshape(len(rows), members)
+
+
+def _value(name: str, value: ArrayLike, members: int) -> Array:
+    values = arguments.numbers(f"initial {name}", value)
+    if values.shape not in ((), (members,)):
+        each = "one value" if members == 1 else f"one value, or one for each of {members} members"
+        raise ValueError(f"initial {name} must be {each}, not of shape {values.shape}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"initial {name} must be finite")
+    return values
+
+
+def _check_together(drive: Drive, names: set[str], prescribed: bool) -> None:
+    """Refuse quantities that contradict each other, or that this drive does not have."""
+    names_given = names | ({"output_angle"} if prescribed else set())
+    if prescribed and (inputs := names & {"output_angle", "output_speed"}):
+        raise ValueError(f"initial {min(inputs)}: the load prescribes it; it is an input of the run")
+    angles, twists = names_given & {"input_angle", "output_angle"}, names_given & {"twist", "torque"}
+    if len(twists) == 2 or (len(angles) == 2 and twists):
+        too_many = sorted(twists | (angles if len(angles) == 2 else set()))
+        raise ValueError(f"initial: of {listed(too_many)} each follows from the others; leave one out")
+    if "current" in names and ("current" not in outputs(drive) or getattr(drive.motor, "inductance", 0.0) == 0.0):
+        raise ValueError("initial current: it follows at once from what this motor is given; leave it out")
+
+
+def beginning_numbers(drive: Drive, initial: Initial | Mapping[str, ArrayLike] | None, inputs: Array) -> Array:
+    """The numbers of the state that a single run begins in, under the inputs of its first instant."""
+    if isinstance(initial, State):
+        return start_of(drive, initial).numbers
+    given = known(drive, initial)
+    if given is None:
+        return drive.rest().numbers
+    numbers = _core.started(drive, given[0], given[1][:, 0].copy(), inputs)
+    if not np.isfinite(numbers).all():
+        raise ValueError(_core.no_beginning(bool(initial)))
+    return numbers

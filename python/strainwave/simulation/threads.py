@@ -11,6 +11,7 @@ from threading import Event, Lock, Thread
 from typing import Any, TypeVar
 
 StepCounter = Callable[[int], None]  # a call of the core reports to it now and then the count of steps done
+
 T = TypeVar("T")
 
 # Of libraries of linear algebra, whose threads wait for each other if other processes run: ten times the processor time.
@@ -43,10 +44,15 @@ class OneThreadOfAlgebra(ContextDecorator):
         self._ended, self._holder = Event(), Thread()
 
     def __enter__(self) -> None:
+        def hold_limit(libraries: Any, limited: Event, ended: Event) -> None:
+            with libraries.limit(limits=1, user_api="blas"):
+                limited.set()
+                ended.wait()
+
         with self._lock:
             if self._calls == 0:
                 limited, self._ended = Event(), Event()
-                self._holder = Thread(target=_hold_limit, args=(_libraries(), limited, self._ended), daemon=True)
+                self._holder = Thread(target=hold_limit, args=(_libraries(), limited, self._ended), daemon=True)
                 self._holder.start()
                 limited.wait()
             self._calls += 1
@@ -57,12 +63,6 @@ class OneThreadOfAlgebra(ContextDecorator):
             if self._calls == 0:
                 self._ended.set()
                 self._holder.join()
-
-
-def _hold_limit(libraries: Any, limited: Event, ended: Event) -> None:
-    with libraries.limit(limits=1, user_api="blas"):
-        limited.set()
-        ended.wait()
 
 
 one_thread_of_algebra = OneThreadOfAlgebra()

@@ -1,8 +1,12 @@
-"""A stretch of time cut into steps."""
+"""A stretch of time cut into steps, and limits on memory and on the length of runs.
+
+A message names what is too large, its count and size, and the remedy.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,15 +14,80 @@ from numpy.typing import NDArray
 
 from strainwave import _core
 from strainwave.equality import ComparedByFields
-from strainwave.simulation.memory import check_instants, room_for
 
 Array = NDArray[np.float64]
-NEVER = np.empty(0)
+
+NO_INSTANTS = np.empty(0)
 # What a run keeps in memory [bytes]: of each step its end, found in a few goes, and of each that is laid out its inputs.
 BYTES_PER_STEP, BYTES_PER_INPUTS = 33.0, 144.0
 LONG_RUN = "take longer steps, sample less often, or make several runs, each from the end of the one before"
 LONGER_STEPS = "take longer steps or slower inputs"
 STEPS_PER_CHUNK = 200_000  # steps whose inputs are laid out at once: bounds the memory of long runs
+MAX_INSTANTS = 1e8  # steps or samples of one run or signal: 5.5 hours in steps of 0.2 ms
+MAX_ACTIONS = 1e7  # of a controller in one run: 10 000 s at 1 kHz
+MAX_BYTES = 8e9  # that steps or samples of one run may take
+BYTES_PER_ACTION = 120.0  # memory for a sample of a controller with the instant at which its output arrives (measured)
+
+
+@contextmanager
+def room_for(what: str, count: float, each: float, remedy: str) -> Iterator[None]:
+    """Refuse what takes more than `MAX_BYTES`; a MemoryError within names it, its size, and the remedy.
+
+    Args:
+        each: size of one [bytes]
+
+    >>> with room_for("samples", 5e8, 8.0, "take fewer"):
+    ...     raise MemoryError
+    Traceback (most recent call last):
+    MemoryError: 5e+08 samples take 4 GB, more memory than there is; take fewer
+    """
+    if count * each > MAX_BYTES:
+        raise MemoryError(
+            f"{count:.3g} {what} take {1e-9 * count * each:.3g} GB; at most {1e-9 * MAX_BYTES:g} GB are allowed; {remedy}"
+        )
+    try:
+        yield
+    except MemoryError:
+        size = f"{1e-9 * count * each:.3g} GB"
+        raise MemoryError(f"{count:.3g} {what} take {size}, more memory than there is; {remedy}") from None
+
+
+def check_room(what: str, count: float, each: float, remedy: str) -> None:
+    """Refuse what is too large for the memory, as `room_for` does, before time is spent on a part of it.
+
+    >>> check_room("samples", 1e15, 8.0, "take fewer")
+    Traceback (most recent call last):
+    MemoryError: 1e+15 samples take 8e+06 GB; at most 8 GB are allowed; take fewer
+    """
+    with room_for(what, count, each, remedy):
+        np.empty(int(count * each), np.uint8)
+
+
+def check_instants(duration: float, step: float, remedy: str, most: float = MAX_INSTANTS) -> None:
+    """Refuse to cut a duration [s] into more than `most` steps [s].
+
+    >>> check_instants(1.0, 1e-12, "take longer ones")
+    Traceback (most recent call last):
+    ValueError: 1 s are more than 1e+08 steps of 1e-12 s; take longer ones
+    """
+    if duration > most * step:
+        raise ValueError(f"{duration:g} s are more than {most:g} steps of {step:g} s; {remedy}")
+
+
+def check_acting(duration: float, period: float) -> None:
+    """Refuse more than `MAX_ACTIONS` of a controller, one a period [s] over a duration [s].
+
+    >>> check_acting(0.1, 1e-9)
+    Traceback (most recent call last):
+    ValueError: a controller with period = 1e-09 s acts 1e+08 times in 0.1 s; at most 1e+07 times are allowed; take a longer \
+period, or make several runs
+    """
+    if duration > MAX_ACTIONS * period:
+        raise ValueError(
+            f"a controller with period = {period:g} s acts {duration / period:.3g} times in {duration:g} s; at most "
+            f"{MAX_ACTIONS:g} times are allowed; take a longer period, or make several runs"
+        )
+    check_room("samples of the controller", duration / period, BYTES_PER_ACTION, "take a longer period, or make several runs")
 
 
 @dataclass(frozen=True, eq=False)

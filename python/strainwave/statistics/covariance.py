@@ -23,10 +23,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.statistics.residuals import andrews_lags, correlation_length, spectrum
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
-MIN_SINGULAR = 1e-10  # singular values below this share of the largest carry no information
+MIN_SINGULAR_OF_JACOBIAN = 1e-10  # singular values below this share of the largest carry no information
 MAX_OPEN_PART = 1e-6  # of an unknown in directions that are not determined: one with more is not determined either
 MAX_TAKEN_POWER = 0.8  # of the power of the noise, that a fit takes; residuals do not determine a larger share (assumed)
 
@@ -64,7 +64,7 @@ def posterior_of(
     size = np.linalg.norm(rows, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     left, singular, directions = np.linalg.svd(rows / size, full_matrices=False)
-    dead = singular <= MIN_SINGULAR * singular.max(initial=0.0)
+    dead = singular <= MIN_SINGULAR_OF_JACOBIAN * singular.max(initial=0.0)
     root = directions.T * np.where(dead, 0.0, 1.0 / np.where(dead, 1.0, singular))
     moved = root @ root.T @ (jacobian / size).T  # each unknown by each sample, in units of `size`
     basis = left[:samples, ~dead]

@@ -6,10 +6,14 @@ separated, only sums of them are determined (`determined_sum`). The covariance i
 (`covariance.covariance_of`).
 Terms that may act as well, but are not needed, are rivals: with each of them the coefficients differ, and by Akaike's weights
 that spread is part of their standard deviation (Buckland, Burnham and Augustin, Biometrics 53 (1997) 603-618, eq. 9).
+
+An order is a number of cycles in each revolution of an angle. Its wave with amplitude A and phase φ is A sin(order · angle + φ)
+= A cos φ sin(order · angle) + A sin φ cos(order · angle): two columns of a linear fit.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -23,7 +27,7 @@ from strainwave.statistics.residuals import correlation_length
 
 Array = NDArray[np.float64]
 
-MIN_SINGULAR = 1e-8  # of the largest singular value of columns of length 1: a smaller one is rounding
+MIN_SINGULAR_OF_COLUMNS = 1e-8  # of the largest singular value of columns of length 1: a smaller one is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +105,7 @@ def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
     """
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0.0, size, 1.0)
-    coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR)[0]
+    coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR_OF_COLUMNS)[0]
     return np.asarray((coefficients.T / size).T)
 
 
@@ -116,7 +120,7 @@ def normal_inverse(columns: Array) -> Array:
     size = np.linalg.norm(columns, axis=0)
     size = np.where(size > 0.0, size, 1.0)
     _, singular, directions = np.linalg.svd(columns / size, full_matrices=False)
-    live = singular > MIN_SINGULAR * singular.max(initial=0.0)
+    live = singular > MIN_SINGULAR_OF_COLUMNS * singular.max(initial=0.0)
     root = directions[live].T / singular[live]
     return np.asarray((root @ root.T) / np.outer(size, size))
 
@@ -128,12 +132,12 @@ def own_share(columns: Array, others: Array | None = None) -> Array:
     [0.707, 0.707]
     """
     beside = np.zeros((len(columns), 0)) if others is None else others
-    found = []
+    shares = []
     for place, column in enumerate(columns.T):
         rest = np.column_stack([np.delete(columns, place, axis=1), beside])
         left = column - rest @ solved(rest, column) if rest.shape[1] else column
-        found.append(float(np.linalg.norm(left)) / max(float(np.linalg.norm(column)), 1e-300))
-    return np.array(found)
+        shares.append(float(np.linalg.norm(left)) / max(float(np.linalg.norm(column)), 1e-300))
+    return np.array(shares)
 
 
 def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left: Array) -> Array:
@@ -146,11 +150,37 @@ def _of_choice(columns: Array, target: Array, rivals: Array, values: Array, left
     moved, gains = [], []
     for rival in rivals.T:
         more = np.column_stack([columns, rival])
-        found = solved(more, target)
-        rest = target - more @ found
-        moved.append(found[:-1] - values)
+        coefficients = solved(more, target)
+        rest = target - more @ coefficients
+        moved.append(coefficients[:-1] - values)
         gains.append(0.5 * independent * np.log(squares / max(float(rest @ rest), 1e-300)) - 1.0)
     evidence = np.exp(np.array([0.0, *gains]) - max(0.0, *gains))
     shares = evidence[1:] / evidence.sum()
     steps = np.array(moved)
     return np.asarray((steps.T * shares) @ steps)
+
+
+# ---- Waves of orders over an angle -----------------------------------------------------------------------------------
+
+
+def order_waves(angle: Array, orders: Sequence[float]) -> Array:
+    """Return the sine and the cosine of each order of an angle [rad], one after the other, shape (n, 2 orders).
+
+    >>> order_waves(np.array([0.0, 0.25 * np.pi]), [2.0, 4.0]).round(9).tolist()
+    [[0.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, -1.0]]
+    """
+    waves = np.empty((len(angle), 2 * len(orders)))
+    phases = np.multiply.outer(angle, orders)
+    np.sin(phases, out=waves[:, 0::2])
+    np.cos(phases, out=waves[:, 1::2])
+    return waves
+
+
+def amplitudes_of(coefficients: Array) -> tuple[Array, Array]:
+    """Return amplitude and phase [rad] of each order by the coefficients of `order_waves`, both of shape (orders,).
+
+    >>> [each.round(3).tolist() for each in amplitudes_of(np.array([3.0, 4.0]))]
+    [[5.0], [0.927]]
+    """
+    sine, cosine = coefficients[0::2], coefficients[1::2]
+    return np.hypot(sine, cosine), np.arctan2(cosine, sine)

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import Gear, arguments, typeset
 from strainwave.presentation import Pictured, Presented, counted
 from strainwave.simulation import scenario
-from strainwave.simulation.memory import check_instants
 from strainwave.simulation.scenario import Scenario
+from strainwave.simulation.time_grid import check_instants
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -129,12 +129,11 @@ def lost_motion(gear: Gear, load_torque: float = 0.0, swing: float = 0.0) -> Los
 
 def friction_at_rest(law: Any, load: float = 0.0) -> float:
     """Return the torque [N.m] that a friction takes at rest, under a load [N.m]; that of bristles where they begin to slide."""
-    held = [float(law.hold(sense, load=load)) for sense in (1.0, -1.0)]
-    slow = [
-        2.0 * law.steady(sense * CREEP_SPEED, load=load) - law.steady(2.0 * sense * CREEP_SPEED, load=load)
-        for sense in (1.0, -1.0)
-    ]
-    return float(np.abs([*held, *slow]).max())
+    torques = []
+    for sense in (1.0, -1.0):
+        slow, twice = (law.steady(factor * sense * CREEP_SPEED, load=load) for factor in (1.0, 2.0))
+        torques += [float(law.hold(sense, load=load)), 2.0 * slow - twice]
+    return float(np.abs(torques).max())
 
 
 @dataclass(frozen=True)

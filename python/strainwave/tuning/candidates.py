@@ -22,15 +22,15 @@ from strainwave.tuning.cascade import (
     model_of,
     observer_of,
     speed_bandwidth,
+    steady_torque,
     tuned_law,
 )
 from strainwave.tuning.goals import Goal
 from strainwave.tuning.loops import Loops, sampled_cascade
-from strainwave.tuning.steady_torque import steady_torque
 
 Array = NDArray[np.float64]
 
-EFFECTS = {
+GEAR_EFFECTS = {
     "friction": ("friction_input", "friction_mesh", "friction_output"),
     "torsion": ("stiffness", "hysteresis", "softening"),
     "kinematic error": ("kinematic_error",),
@@ -95,7 +95,7 @@ def candidates(
     For a motion that creeps, friction is also supplied by the measured motion.
     """
     gear = plant.drive.gear
-    present = [effect for effect in EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
+    present = [effect for effect in GEAR_EFFECTS if has_effect(gear, effect) and not too_steep(plant, effect)]
     if is_line(plant.drive):  # which the cascade feeds forward, too
         present.remove("friction")
     choices = [each for count in range(1, len(present) + 1) for each in combinations(present, count)]
@@ -113,8 +113,15 @@ def candidates(
         if sees_output and setting.feedback == "input" and orders:
             learners = list(_learners(plant, setting, orders, goal, draws))
             for effects in [(), *choices]:
-                if "kinematic error" not in effects:
-                    yield from (_with_learning(plant, setting, effects, *each) for each in learners)
+                if "kinematic error" in effects:
+                    continue
+                for name, learner in learners:  # over the input
+                    added = _compensation(plant, effects, setting).replace(learning=learner)
+                    drive, name = (
+                        plant.controlled(tuned_law(plant, setting), added),
+                        f"{_name(effects, setting)}, {name} learnt",
+                    )
+                    yield ControllerCandidate(name, effects, setting, drive, len(effects) + 1)
 
 
 def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
@@ -126,10 +133,14 @@ def _with_model(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> Con
 def _with_scale(plant: Plant, setting: Setting, effects: tuple[str, ...]) -> ControllerCandidate:
     """Return the same with an observer of the scale of friction in place of the integral and of one of the disturbance.
 
-    An integral would supply the missing friction itself, and leave no error by which the scale moves.
+    An integral would supply the missing friction itself, and leave no error by which the scale moves. The scale follows in
+    `SCALE_TIME` of motion at the usual speed.
     """
     law = tuned_law(plant, setting).replace(speed_integral=0.0)
-    scale = compensation.FrictionScale(gain=_scale_gain(plant, setting), position_gain=law.position_gain)
+    coulomb, viscous = line_of_friction(plant.drive.gear, plant.start_temperature)
+    torque = max(coulomb + viscous * USUAL_SPEED, MIN_FRICTION)
+    gain = speed_bandwidth(plant, setting) * plant.total_inertia / (torque**2 * SCALE_TIME)
+    scale = compensation.FrictionScale(gain=gain, position_gain=law.position_gain)
     added = _compensation(plant, effects, setting).replace(observer=scale)
     name = f"{_name(effects, setting)}, scale of friction observed"
     return ControllerCandidate(name, effects, setting, plant.controlled(law, added), len(effects) + 1)
@@ -177,18 +188,18 @@ def lost_motion_map(plant: Plant, goal: Goal) -> compensation.LostMotionMap:
     rising = rate > 0.0
     points = np.linspace(angle.min(), angle.max(), 2 * MAP_POINTS + 1)[1::2]  # away from the ends, where it turns back
     last = np.arange(2 * count) >= count
-    forward, backward = (_over_angle(points, angle[last & sense], lead[last & sense]) for sense in (rising, ~rising))
+    leads = []
+    for rows in (last & rising, last & ~rising):
+        order = np.argsort(angle[rows])
+        leads.append(np.interp(points, angle[rows][order], lead[rows][order]))
+    forward, backward = leads
     reach = min(
         np.ptp(angle) * np.geomspace(*MAP_REACH_SHARES, MAP_REACHES),
         key=lambda each: np.sum((lead - _mapped(points, forward, backward, each, angle))[last] ** 2),
     )
-    angles, leads = points.tolist(), (forward.tolist(), backward.tolist())
-    return compensation.LostMotionMap(angle=angles, forward=leads[0], backward=leads[1], reach=float(reach))
-
-
-def _over_angle(points: Array, angle: Array, lead: Array) -> Array:
-    order = np.argsort(angle)
-    return np.interp(points, angle[order], lead[order])
+    return compensation.LostMotionMap(
+        angle=points.tolist(), forward=forward.tolist(), backward=backward.tolist(), reach=float(reach)
+    )
 
 
 def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle: Array) -> Array:
@@ -199,13 +210,6 @@ def _mapped(points: Array, forward: Array, backward: Array, reach: float, angle:
         now = np.sign(moved) + (now - np.sign(moved)) * np.exp(-abs(moved) / reach) if moved else now
         sense[k] = now
     return np.asarray(0.5 * (above + below + sense * (above - below)))
-
-
-def _with_learning(plant: Plant, setting: Setting, effects: tuple[str, ...], name: str, learner: Any) -> ControllerCandidate:
-    """Return a model with what is learnt over the input."""
-    added = _compensation(plant, effects, setting).replace(learning=learner)
-    drive = plant.controlled(tuned_law(plant, setting), added)
-    return ControllerCandidate(f"{_name(effects, setting)}, {name} learnt", effects, setting, drive, len(effects) + 1)
 
 
 def _learners(
@@ -245,20 +249,16 @@ def learnable(
 ) -> tuple[list[float], float]:
     """Return those orders whose waves the loops of all drawn gears follow within 90 degrees of a lag, and this lag [s].
 
-    Args:
-        plant, setting: the drive and its cascade
-        orders: of the waves over the input
-        frequency: of each [rad/s]
-        draws: numbers of drawn gears, by path
+    The waves over the input have frequencies [rad/s]; draws are numbers of drawn gears, by path.
     """
     sampled = sampled_cascade(plant, setting)
     lag = float(-np.mean(np.angle(Loops.of(plant, sampled).following(frequency)) / frequency))
-    known = np.ones(len(orders), dtype=bool)
+    within = np.ones(len(orders), dtype=bool)
     for k in range(len(next(iter(draws.values()), ()))):
-        drawn = replace(plant, drive=plant.drive.replace({path: float(each[k]) for path, each in draws.items()}))
+        drawn = replace(plant, drive=plant.drive.replace({path: float(numbers[k]) for path, numbers in draws.items()}))
         follows = Loops.of(drawn, sampled).following(frequency) * np.exp(1j * frequency * lag)
-        known &= follows.real > 0.0
-    return [order for order, within in zip(orders, known, strict=True) if within], max(lag, 0.0)
+        within &= follows.real > 0.0
+    return [order for order, is_within in zip(orders, within, strict=True) if is_within], max(lag, 0.0)
 
 
 def _name(effects: tuple[str, ...], setting: Setting) -> str:
@@ -275,17 +275,9 @@ def _compensation(plant: Plant, effects: tuple[str, ...], setting: Setting) -> C
     )
 
 
-def _scale_gain(plant: Plant, setting: Setting) -> float:
-    """Return the gain at which the scale follows in `SCALE_TIME` of motion at the usual speed."""
-    coulomb, viscous = line_of_friction(plant.drive.gear, plant.start_temperature)
-    torque = max(coulomb + viscous * USUAL_SPEED, MIN_FRICTION)
-    per_speed = speed_bandwidth(plant, setting) * plant.total_inertia
-    return per_speed / (torque**2 * SCALE_TIME)
-
-
 def with_effects(gear: Gear, effects: tuple[str, ...], temperature: float = ROOM_TEMPERATURE) -> Gear:
     """Return a gear of which only some effects are known, and the line of its friction at a temperature [K]."""
-    parts = {part: getattr(gear, part) for effect in effects for part in EFFECTS[effect]}
+    parts = {part: getattr(gear, part) for effect in effects for part in GEAR_EFFECTS[effect]}
     return bare(gear, temperature).replace(**parts)
 
 
@@ -298,7 +290,7 @@ def has_effect(gear: Gear, effect: str) -> bool:
         return steepest_error(gear) > 0.0
     return any(
         getattr(gear, part) != getattr(none.replace(stiffness=stiffness.Linear(k=RIGID_STIFFNESS)), part)
-        for part in EFFECTS[effect]
+        for part in GEAR_EFFECTS[effect]
     )
 
 

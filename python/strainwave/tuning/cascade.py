@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Compensation, Drive, Gear, _core, arguments, compensation, control, friction, loads, motor, stiffness
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
-from strainwave.tuning.steady_torque import steady_torque
+
+Array = NDArray[np.float64]
 
 RIGID_STIFFNESS = 1e9  # N.m/rad: stiffer than any gear of a catalogue by a factor of 100
 PHASE_OF_DELAY = 0.5  # rad that the delay takes where the speed loop crosses over: 60 degrees are left
@@ -19,12 +21,47 @@ POSITION_SHARE = 0.25  # bandwidth of the position loop over that of the speed l
 INTEGRAL_SHARE = 0.25  # likewise of the integral of the speed
 FAST_SPEED, SLOW_SPEED = 100.0, 1.0  # rad/s of the input, through whose friction the line of Coulomb and viscous friction goes
 ANGLES_PER_TURN = 64  # of the input, over which friction is averaged
-LIMIT_OF_LEVELS = (
-    20.0  # times friction and weight: torque of a motor without a stated limit, in addition to that of acceleration
-)
+LIMIT_OF_LEVELS = 20.0  # times friction and weight: torque of a motor without a stated limit, besides that of acceleration
 LIMIT_OF_ACCELERATION = 1e4  # rad/s2 of the input
 MIN_PERIOD = 1e-5  # s: no controller of a joint is faster, and a motion of a second has 100 000 periods
 MAX_VIBRATION = 1e6  # rad/s of the fastest vibration: steps of 1 us, of which a motion of seconds has millions
+
+
+class SteadyTorque(NamedTuple):
+    """Torques at the input beyond the load over the ratio, each in the shape of speed and angle.
+
+    Attributes:
+        friction: of all places [N.m], positive where it opposes a positive speed
+        reaction: change of the load's torque by the kinematic error [N.m]
+    """
+
+    friction: Array
+    reaction: Array
+
+
+def steady_torque(
+    gear: Gear, speed: ArrayLike, angle: ArrayLike = 0.0, load: float = 0.0, temperature: float = ROOM_TEMPERATURE
+) -> SteadyTorque:
+    """Return the torques of a gear that turns steadily.
+
+    Args:
+        speed: of the input [rad/s]
+        angle: of the input [rad]; speed and angle are broadcast
+        load: torque at the output that opposes forward motion [N.m]
+        temperature: of the gear [K]
+    """
+    turning, where = (np.array(each) for each in np.broadcast_arrays(np.asarray(speed, float), np.asarray(angle, float)))
+    inverse = 1.0 / gear.kinematics.ratio
+    full = np.asarray(gear.kinematic_error.slope(where.ravel())).reshape(where.shape)
+    transmitted = np.full(where.shape, load)
+    for _ in range(2):  # friction of the output is transmitted too, and eases the error a little
+        slope = full / (1.0 + getattr(gear.kinematic_error, "load_sensitivity", 0.0) * np.abs(transmitted))
+        per_input = inverse - slope
+        at_output = gear.friction_output.steady(turning * per_input, where * inverse, load, temperature)
+        transmitted = load + at_output
+    at_mesh = gear.friction_mesh.steady(turning * per_input, where * inverse, transmitted, temperature)
+    at_input = gear.friction_input.steady(turning, where, per_input * transmitted, temperature)
+    return SteadyTorque(np.asarray(at_input + per_input * (at_mesh + at_output)), np.asarray(-load * slope))
 
 
 @dataclass(frozen=True)
@@ -62,12 +99,7 @@ class Plant:
 
     @classmethod
     def of(cls, gear_set: GearSet, period: float, delay: float) -> Plant:
-        """Return the plant of a set.
-
-        Raises:
-            ValueError: the set has no motor or no load, the load prescribes the motion, or the motor takes neither a current, a
-                torque nor a voltage, or the inertia of the load is too small
-        """
+        """Return the plant of a set."""
         drive, load = gear_set.drive, gear_set.drive.load
         if isinstance(load, loads.Prescribed):
             raise ValueError(f"{gear_set.name}: the load prescribes the motion of the output; give one with an inertia")
@@ -211,11 +243,7 @@ def observer_of(plant: Plant, setting: Setting) -> compensation.DisturbanceObser
 
 
 def model_of(plant: Plant, gear: Gear) -> compensation.ModelFeedforward:
-    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate.
-
-    Raises:
-        ValueError: the kinematic error of the gear is too steep to be fed forward
-    """
+    """Return the feed-forward of a model of the drive: its load, and a gear with the effects that it is to compensate."""
     inertia = float(plant.drive.motor.inertia)
     return compensation.ModelFeedforward(
         gear=gear, load=plant.drive.load, motor_inertia=inertia, temperature=plant.start_temperature

@@ -11,18 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments, loads, typeset
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT, RUNS
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every
 from strainwave.presentation import Pictured, Reported, Row
 from strainwave.progress import Progress, in_turn
+from strainwave.simulation.run import simulate
 from strainwave.tuning import goals
-from strainwave.tuning.candidates import EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
+from strainwave.tuning.candidates import GEAR_EFFECTS, USUAL_SPEED, baseline, candidates, has_effect, too_steep
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.conditions import ConditionResult, OverCompensation, conditions, over_compensation
 from strainwave.tuning.drawn import drawn_gears, is_phase, scales
 from strainwave.tuning.goals import Goal
-from strainwave.tuning.judging import AT_LIMIT, Judged, judged
+from strainwave.tuning.judging import AT_LIMIT, ConditionResult, Judged, OverCompensation, conditions, judged, over_compensation
 from strainwave.tuning.loops import MIN_MODULUS, LoopMargins, Loops, margins_of, sharpest
 
 if TYPE_CHECKING:
@@ -45,7 +47,7 @@ TORQUE_FREQUENCY = 1.0  # Hz, at which the torque goes to and fro
 STOP_STIFFNESS_RATIO = 1.0  # of the stop over the gear at the torque that is wanted
 CREEP_DURATION = 4.0  # s
 MIN_BANDWIDTH_RATIO = 5.0  # of the position loop over the pace of the motion
-MEASUREMENTS = {
+MEASUREMENT_OF_EFFECT = {
     "friction": "a friction table or a log of motion determines it",
     "torsion": "a torsion loop determines it",
     "kinematic error": "a record of both encoders over whole turns of the output determines it",
@@ -145,7 +147,6 @@ class Compensated(Pictured, Reported):
     def plot(self) -> Figure:
         """Return a figure of the error of the output over time: of the cascade, and of the controller chosen."""
         from strainwave.drawing import marks
-        from strainwave.tuning.pictures import draw_errors
 
         with marks.new_figure(3.2) as figure:
             draw_errors(figure, self)
@@ -200,25 +201,45 @@ def compensate(
     arguments.one_of("encoder", encoder, ("input", "output"))
     arguments.whole("members", members, MIN_MEMBERS, MAX_MEMBERS)
     arguments.one_of("goal", goal, ("position", "speed", "smooth", "torque"))
-    _refuse_unused(goal, travel=travel, torque=torque)
+    for name, value in (("travel", travel), ("torque", torque)):
+        if value is not None and goal != GOAL_OF_OPTION[name]:
+            raise ValueError(
+                f"{name} = {shortened(value)} is not used by the goal {goal}, only by {GOAL_OF_OPTION[name]}; leave it out"
+            )
     plant = Plant.read(gear_set, period, delay)
     travel = USUAL_TRAVEL if travel is None else travel
-    if goal == "torque":
-        torque = _wanted_torque(plant, torque)
-        gear_set = _against_stop(gear_set, plant, torque)
+    if goal == "torque":  # against a spring to the ground, with the inertia of the load
+        largest = plant.limit / plant.actuation_per_torque * abs(plant.ratio)
+        torque = TORQUE_SHARE * largest if torque is None else arguments.number("torque", torque, "N.m", "(]", 0.0, largest)
+        twist = float(np.abs(plant.drive.gear.twist(np.array([0.0, torque])))[-1])
+        stop = loads.TorsionSpring(inertia=gear_set.load.inertia, stiffness=STOP_STIFFNESS_RATIO * torque / twist)
+        gear_set = gear_set.with_parts(load=stop, source="goal torque: a stop in place of the load")
         plant = replace(plant, drive=plant.drive.replace(load=gear_set.load))
         travel = torque / gear_set.load.stiffness
 
     def goal_at(pace: float) -> Goal:
         return goal_of(goal, plant, travel, speed, pace)
 
-    wanted = _long_enough(goal_at(1.0), plant)
+    wanted = goal_at(1.0)
+    if wanted.command.duration < MIN_SAMPLES * plant.period:
+        raise ValueError(
+            f"the motion lasts {wanted.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
+            "take a lower speed, a longer travel or a shorter period"
+        )
     draws, anew = (_drawn(gear_set, plant, members, each, known_load=goal == "torque") for each in (seed, seed + 1))
     with in_turn(progress) as turn:
         cascades = _cascades(plant, wanted, draws, encoder, turn)
-        best, others = cascades[0], _judged_candidates(plant, cascades, wanted, draws, turn)
+        best, others = cascades[0], list[Judged]()
+        for candidate in candidates(plant, [cascade.candidate.setting for cascade in cascades], wanted, draws):
+            turn(candidate.name)
+            others.append(judged(candidate, wanted, draws, plant))
+        others.sort(key=lambda result: result.median(wanted.judged_by))
         chosen = _chosen(best, others, wanted)
-        before, after = _judged_anew(best, chosen, wanted, anew, plant)
+        before = after = judged(best.candidate, wanted, anew, plant)
+        if chosen is not best:  # the cascade in place of a controller that gains nothing on other gears
+            again = judged(chosen.candidate, wanted, anew, plant)
+            gains = again.median(wanted.judged_by) < (1.0 - MIN_GAIN) * before.median(wanted.judged_by)
+            after = again if gains else before
         remarks = list(_remarks(gear_set, plant, wanted, best))
         if chosen is not best and after is before:
             remarks.append(f"on gears drawn anew the {chosen.candidate.name} gained nothing, so the cascade is kept")
@@ -237,74 +258,19 @@ def compensate(
         )
 
 
-def _refuse_unused(goal: str, **options: float | None) -> None:
-    """
-    Raises:
-        ValueError: a number is given that the goal does not use
-    """
-    for name, value in options.items():
-        if value is not None and goal != GOAL_OF_OPTION[name]:
-            raise ValueError(
-                f"{name} = {shortened(value)} is not used by the goal {goal}, only by {GOAL_OF_OPTION[name]}; leave it out"
-            )
-
-
-def _long_enough(goal: Goal, plant: Plant) -> Goal:
-    """Return a goal whose motion has enough periods of the controller.
-
-    Raises:
-        ValueError: it has not
-    """
-    if goal.command.duration < MIN_SAMPLES * plant.period:
-        raise ValueError(
-            f"the motion lasts {goal.command.duration:.3g} s, and {MIN_SAMPLES} periods of the controller are the least; "
-            "take a lower speed, a longer travel or a shorter period"
-        )
-    return goal
-
-
 def _cascades(plant: Plant, goal: Goal, draws: Mapping[str, Array], encoder: str, turn: Callable[[str], None]) -> list[Judged]:
-    """Return the best cascade of each encoder that the controller sees, the better one first.
-
-    Raises:
-        ValueError: no run under the better one came to its end
-    """
+    """Return the best cascade of each encoder that the controller sees, the better one first."""
     encoders = ("input", "output") if encoder == "output" else ("input",)
-    found = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
-    found.sort(key=lambda each: each.upper(goal.judged_by))
-    best = found[0]
+    cascades = [best_cascade(plant, goal, draws, each, turn) for each in encoders]
+    cascades.sort(key=lambda cascade: cascade.upper(goal.judged_by))
+    best = cascades[0]
     if best.failures == len(best.figures[goal.judged_by]):
-        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{_advice(best, goal, plant)}")
-    return found
-
-
-def _advice(best: Judged, goal: Goal, plant: Plant) -> str:
-    """Return what to do if the motor is at its limit; nothing if it is not."""
-    if best.reason != AT_LIMIT:
-        return ""
-    lower = " or ".join(["speed", *(name for name, user in GOAL_OF_OPTION.items() if user == goal.name)])
-    return f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
-
-
-def _judged_candidates(
-    plant: Plant, cascades: Sequence[Judged], goal: Goal, draws: Mapping[str, Array], turn: Callable[[str], None]
-) -> list[Judged]:
-    """Return all compensations of these cascades, best first."""
-    others = []
-    for candidate in candidates(plant, [each.candidate.setting for each in cascades], goal, draws):
-        turn(candidate.name)
-        others.append(judged(candidate, goal, draws, plant))
-    return sorted(others, key=lambda each: each.median(goal.judged_by))
-
-
-def _judged_anew(best: Judged, chosen: Judged, goal: Goal, draws: Mapping[str, Array], plant: Plant) -> tuple[Judged, Judged]:
-    """Return cascade and chosen controller on other gears; the cascade in place of a controller that gains nothing there."""
-    before = judged(best.candidate, goal, draws, plant)
-    if chosen is best:
-        return before, before
-    after = judged(chosen.candidate, goal, draws, plant)
-    gains = after.median(goal.judged_by) < (1.0 - MIN_GAIN) * before.median(goal.judged_by)
-    return before, after if gains else before
+        advice = ""
+        if best.reason == AT_LIMIT:
+            lower = " or ".join(["speed", *(name for name, user in GOAL_OF_OPTION.items() if user == goal.name)])
+            advice = f"; the motor takes at most {plant.limit:g} {plant.effort_unit}: take a lower {lower}"
+        raise ValueError(f"no run of the {best.candidate.name} came to its end: {best.reason}{advice}")
+    return cascades
 
 
 def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int, known_load: bool) -> dict[str, Array]:
@@ -312,24 +278,6 @@ def _drawn(gear_set: GearSet, plant: Plant, members: int, seed: int, known_load:
     ideal = gear_set.with_parts(motor=plant.drive.motor, control=plant.drive.control, source="current loop")
     draws = drawn_gears(ideal, members, seed)
     return {path: values for path, values in draws.items() if not (known_load and path.startswith("load."))}
-
-
-def _wanted_torque(plant: Plant, torque: float | None) -> float:
-    """Return the torque of the output from end to end [N.m], that is stated or usual.
-
-    Raises:
-        ValueError: it is not positive, or exceeds the largest torque of the motor times the ratio
-    """
-    largest = plant.limit / plant.actuation_per_torque * abs(plant.ratio)
-    return TORQUE_SHARE * largest if torque is None else arguments.number("torque", torque, "N.m", "(]", 0.0, largest)
-
-
-def _against_stop(gear_set: GearSet, plant: Plant, torque: float) -> GearSet:
-    """Return a set whose load is a spring to the ground, with the inertia of its load."""
-    twist = float(np.abs(plant.drive.gear.twist(np.array([0.0, torque])))[-1])
-    load: Any = gear_set.load
-    stop = loads.TorsionSpring(inertia=load.inertia, stiffness=STOP_STIFFNESS_RATIO * torque / twist)
-    return gear_set.with_parts(load=stop, source="goal torque: a stop in place of the load")
 
 
 def best_cascade(
@@ -363,23 +311,16 @@ def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: f
     """Return a goal by its name, at `pace` times its speed."""
     usual = USUAL_SPEED / abs(plant.ratio) * (CREEP_SPEED_SHARE if name == "smooth" else 1.0)
     usual = np.pi * TORQUE_FREQUENCY * travel if name == "torque" else usual
-    given = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
+    commanded = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
     unit = plant.effort_unit
     if name == "position":
-        return goals.position(arguments.number("travel", travel, "rad", low=0.0), given, unit, plant.period)
+        return goals.position(arguments.number("travel", travel, "rad", low=0.0), commanded, unit, plant.period)
     if name == "torque":
         load: Any = plant.drive.load
-        return goals.torque(load.stiffness * travel, load.stiffness, given, unit, plant.period)
+        return goals.torque(load.stiffness * travel, load.stiffness, commanded, unit, plant.period)
     if name == "speed":
-        return goals.speed(given, SPEED_GOAL_TURNS * 2.0 * np.pi / abs(plant.ratio) / given, unit)
-    return goals.smooth(given, CREEP_DURATION, unit)
-
-
-def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
-    """Yield what was assumed, and what cannot be gained."""
-    yield from _of_the_drive(gear_set, plant, goal)
-    yield from _of_effects(gear_set, plant)
-    yield from _of_the_cascade(plant, goal, best)
+        return goals.speed(commanded, SPEED_GOAL_TURNS * 2.0 * np.pi / abs(plant.ratio) / commanded, unit)
+    return goals.smooth(commanded, CREEP_DURATION, unit)
 
 
 def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
@@ -398,20 +339,20 @@ def _of_the_drive(gear_set: GearSet, plant: Plant, goal: Goal) -> Iterator[str]:
         yield f"its cogging of {cogging:g} N·m is left out: a controller that sees the output learns its orders"
 
 
-def _of_effects(gear_set: GearSet, plant: Plant) -> Iterator[str]:
-    for effect in EFFECTS:
+def _remarks(gear_set: GearSet, plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
+    """Yield what was assumed, and what cannot be gained."""
+    yield from _of_the_drive(gear_set, plant, goal)
+    for effect in GEAR_EFFECTS:
         if not has_effect(plant.drive.gear, effect):
-            yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {MEASUREMENTS[effect]}"
+            remedy = MEASUREMENT_OF_EFFECT[effect]
+            yield f"the gear has no {effect}: if it has in truth, it cannot be compensated by a model; {remedy}"
         elif too_steep(plant, effect):
             yield f"the {effect} is too steep to be fed forward: its slope times the ratio reaches 1"
         elif names := assumed_numbers(gear_set, effect):
-            spread = (
-                f"{'any phase and ' if _has_unknown_phase(gear_set, effect) else ''}more or less of it by a factor of up to 1.3"
-            )
-            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENTS[effect]}"
-
-
-def _of_the_cascade(plant: Plant, goal: Goal, best: Judged) -> Iterator[str]:
+            numbers = _all_of(gear_set, effect)
+            unknown = any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in numbers)
+            spread = f"{'any phase and ' if unknown else ''}more or less of it by a factor of up to 1.3"
+            yield f"{effect} is assumed ({names}), so the drawn gears have {spread}; {MEASUREMENT_OF_EFFECT[effect]}"
     margins = margins_of(plant, best.candidate.setting)
     bandwidth, modulus = margins.position.crossover, margins.modulus
     if modulus and bandwidth < MIN_BANDWIDTH_RATIO * goal.pace:
@@ -436,10 +377,22 @@ def numbers_of(gear_set: GearSet, effect: str) -> list[Parameter]:
     return [each for each in _all_of(gear_set, effect) if each.value and scales(each.path, each.unit)]
 
 
-def _has_unknown_phase(gear_set: GearSet, effect: str) -> bool:
-    return any(is_phase(each.path) and gear_set.sources[f"gear.{each.path}"].assumed for each in _all_of(gear_set, effect))
-
-
 def _all_of(gear_set: GearSet, effect: str) -> list[Parameter]:
-    begins = tuple(f"{part}." for part in EFFECTS[effect])
+    begins = tuple(f"{part}." for part in GEAR_EFFECTS[effect])
     return [each for path, each in every(gear_set.gear).items() if path.startswith(begins)]
+
+
+def draw_errors(canvas: Figure, compensated: Compensated) -> None:
+    """Draw the error of the output over time, of the gear as it is stated; as a torque if that is the goal."""
+    axes = canvas.add_subplot()
+    command = compensated.goal.command
+    name, unit = ("error of the torque", "N.m") if compensated.goal.name == "torque" else ("error of the output", "rad")
+    runs = {"cascade": compensated.baseline} | ({"compensated": compensated.chosen} if compensated.is_compensated else {})
+    for (label, result), (colour, line, width) in zip(runs.items(), (RUNS[1], RUNS[0]), strict=False):
+        control: Any = result.candidate.drive.control
+        sample = control.period * max(round(command.duration / control.period / 2000.0), 1)  # set-points are exact there
+        run = simulate(result.candidate.drive, command, sample=sample)
+        error = compensated.goal.per_angle * np.asarray(command.value(run.time) - run["output_angle"])
+        marks.curve(axes, run.time, error, color=LIGHT[colour], linestyle=line, linewidth=width, label=label)
+    marks.label_axes(axes, name, unit, "time", "s")
+    marks.legend(canvas, axes)

@@ -20,8 +20,8 @@ ASSUMED_SPREADS = {
     "motor.torque_constant": 0.05,
 }  # likewise, of a load, and of a motor: magnets scatter by some percent and lose 0.1 % per kelvin
 # Numbers that a gear has more than once, or of which no effect is larger or smaller.
-SHAPES = {"pressure_angle", "pitch_radius", "major_radius", "minor_radius", "offset", "reference_temperature"}
-SCALED = {
+SHAPE_NUMBERS = {"pressure_angle", "pitch_radius", "major_radius", "minor_radius", "offset", "reference_temperature"}
+SCALED_UNITS = {
     "N.m",
     "N.m/rad",
     "N.m/rad3",
@@ -31,7 +31,7 @@ SCALED = {
     "kg.m2",
     "N.m/A",
 }  # units of numbers that a gear may have more or less of
-PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
+DRAWN_PARTS = ("gear.stiffness", "gear.hysteresis", "gear.kinematic_error", "gear.friction_input", "gear.friction_mesh",
          "gear.friction_output", "load", "gear.damping", "motor.torque_constant")  # fmt: skip
 
 
@@ -43,16 +43,8 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     the load, 1.05 for the torque constant of a motor. A phase that is assumed may be any. Exponents, characteristic speeds and
     the inertia of the motor are not drawn.
 
-    Args:
-        gear_set: a drive with the sources of its numbers
-        members: how many are drawn
-        seed: of the random numbers; the same seed draws the same drives
-
     Returns:
         the values of each number that differs, by path, shape (members,)
-
-    Raises:
-        ValueError: more are asked for than `MAX_DRAWN`
 
     >>> import strainwave as sw
     >>> draws = drawn_gears(sw.GearSet.read("robot-joint"), 3)
@@ -64,7 +56,7 @@ def drawn_gears(gear_set: GearSet, members: int, seed: int = 0) -> dict[str, Arr
     numbers = every(gear_set.drive)
     identified = dict(_identified(gear_set, members, chance))
     draws: dict[str, Array] = {}
-    for part in PARTS:
+    for part in DRAWN_PARTS:
         spread = spread_of(gear_set, part)
         factor = (1.0 + spread) ** chance.uniform(-1.0, 1.0, members)
         for path, number in numbers.items():
@@ -87,7 +79,7 @@ def is_phase(path: str) -> bool:
 
 def scales(path: str, unit: str) -> bool:
     """True if a gear may have more or less of a number."""
-    return unit in SCALED and path.rpartition(".")[2] not in SHAPES and not is_phase(path)
+    return unit in SCALED_UNITS and path.rpartition(".")[2] not in SHAPE_NUMBERS and not is_phase(path)
 
 
 def _identified(gear_set: GearSet, members: int, chance: np.random.Generator) -> Iterator[tuple[str, Array]]:

@@ -101,8 +101,8 @@ def _settling(time: Array, error: Array, band: float) -> Array:
     """Return the time after which an error stays within a band; infinite if it ends outside."""
     outside = ~(np.abs(error) <= band)
     after_last = error.shape[1] - np.argmax(outside[:, ::-1], axis=1)
-    found = np.where(outside.any(axis=1), np.append(time, np.inf)[after_last], 0.0)
-    return np.where(np.isnan(error).any(axis=1), np.nan, found)
+    settled = np.where(outside.any(axis=1), np.append(time, np.inf)[after_last], 0.0)
+    return np.where(np.isnan(error).any(axis=1), np.nan, settled)
 
 
 def to_and_fro(travel: float, speed: float) -> Scenario:
@@ -117,7 +117,6 @@ def position(travel: float, speed: float, effort_unit: str, sample: float = 1e-3
     Args:
         travel: of the output, from end to end [rad]
         speed: largest, of the output [rad/s]
-        effort_unit: of what the motor takes
         sample: period of the set-points [s]
     """
     motion = _ToAndFro.of(travel, speed, sample, 1.0, SETTLING_BAND_SHARE * travel)
@@ -132,7 +131,6 @@ def torque(torque: float, stiffness: float, speed: float, effort_unit: str, samp
     Args:
         torque: from end to end [N.m]
         stiffness: of the stop [N.m/rad]
-        speed, effort_unit, sample: as for `position`
     """
     motion = _ToAndFro.of(torque / stiffness, speed, sample, stiffness, TORQUE_BAND_SHARE * torque)
     return _goal_of_motion("torque", "torque error", "N.m", motion, speed, effort_unit)

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Gear, Sensors, arguments, friction, hysteresis, kinematic_error, meter, stiffness, thermal
+from strainwave import Sensors, arguments, friction, hysteresis, kinematic_error, meter, stiffness, thermal
 from strainwave.analysis.linear import linearise
 from strainwave.messages import listed
 from strainwave.tuning.cascade import Plant, line_of_friction
 
 Array = NDArray[np.float64]
 
-MEASURED = ("input_angle", "input_speed", "output_speed", "transmission_error")  # by the encoders of both shafts
+ENCODER_STATES = ("input_angle", "input_speed", "output_speed", "transmission_error")  # by the encoders of both shafts
 
 
 @dataclass(frozen=True)
@@ -35,11 +35,9 @@ class LinearPlant:
 
     @classmethod
     def of(cls, plant: Plant, largest_torque: float | None = None) -> LinearPlant:
-        """Return the linear model of a plant.
+        """Return the linear model of a plant; with a largest torque [N.m] its spring is the secant to it, without hysteresis.
 
-        Args:
-            largest_torque: for which the spring is right [N.m]: the secant to it, without hysteresis; if none, the spring is as
-                stiff as for small deviations from rest
+        Without one, the spring is as stiff as for small deviations from rest.
         """
         _, viscous = line_of_friction(plant.drive.gear)
         none = friction.Viscous()
@@ -47,8 +45,8 @@ class LinearPlant:
         gear = plant.drive.gear.replace(friction_input=law, friction_mesh=none, friction_output=none)
         gear = gear.replace(kinematic_error=kinematic_error.Fourier())
         if largest_torque is not None:
-            spring = stiffness.Linear(k=_secant(gear, largest_torque))
-            gear = gear.replace(stiffness=spring, hysteresis=hysteresis.MaxwellSlip())
+            secant = float(largest_torque / gear.twist([largest_torque])[0])  # N.m/rad, from rest
+            gear = gear.replace(stiffness=stiffness.Linear(k=secant), hysteresis=hysteresis.MaxwellSlip())
         alone = plant.drive.replace(gear=gear, sensors=Sensors(), meter=meter.NoMeter(), thermal=thermal.Isothermal())
         linear = linearise(alone)
         shares = {"input_angle": 1.0 / plant.ratio, "transmission_error": -1.0}
@@ -57,14 +55,9 @@ class LinearPlant:
         return cls(linear.A, b, linear.states, output, torque)
 
     def cost(self, error: float, speed_error: float | None = None) -> Array:
-        """Return the weights of the states, shape (n, n): squares of the output angle and speed over these errors.
+        """Return the weights of the states, shape (n, n): squares of the output angle and speed over errors [rad], [rad/s].
 
-        Args:
-            error: of the output angle [rad]
-            speed_error: of the output [rad/s]; its speed does not count if not given
-
-        Raises:
-            ValueError: an error is not positive
+        The speed does not count if it has no error.
         """
         weights = np.outer(self.output, self.output) / arguments.number("error", error, "rad", low=0.0) ** 2
         if speed_error is not None:
@@ -73,12 +66,8 @@ class LinearPlant:
         return weights
 
     def measured_by_encoders(self) -> LinearPlant:
-        """Return the same.
-
-        Raises:
-            ValueError: it has states besides angle and speed of both shafts
-        """
-        if sorted(self.states) != sorted(MEASURED):
+        """Return the plant; refuse one with states besides angle and speed of both shafts."""
+        if sorted(self.states) != sorted(ENCODER_STATES):
             raise ValueError(
                 f"the states of the drive are {listed(self.states)}, and encoders measure only angle and speed of both shafts; "
                 "take the lumped gear (structure.Lumped) and a load that is one inertia"
@@ -126,26 +115,15 @@ class HeldPlant:
         return self.extended if self.is_late else (self.step, self.now)
 
     def gains(self, cost: Array, effort: float) -> Array:
-        """Return the gains K of u = -K x that minimise the sum of x' cost x + (u / effort)^2.
-
-        Raises:
-            ValueError: there are none
-        """
+        """Return the gains K of u = -K x that minimise the sum of x' cost x + (u / effort)^2."""
         return optimal(*self.whole, cost, effort)[1]
 
 
 def optimal(step: Array, driven: Array, cost: Array, effort: float) -> tuple[Array, Array]:
     """Return the least sum of x' cost x + (u / effort)^2, as a form of the state, and the gains of u = -K x that reach it.
 
-    By the discrete Riccati equation: AstromWittenmark1997, section 11.2.
-
-    Args:
-        step, driven: F and G of x + = F x + G u
-        cost: of the first states
-        effort: of an input that is as bad as a cost of 1
-
-    Raises:
-        ValueError: there are none
+    By the discrete Riccati equation: AstromWittenmark1997, section 11.2. `step` and `driven` are F and G of x + = F x + G u;
+    the cost is of the first states, and an input of `effort` is as bad as a cost of 1.
     """
     from scipy.linalg import solve_discrete_are
 
@@ -169,8 +147,3 @@ def _held(a: Array, b: Array, time: float) -> tuple[Array, Array]:
     whole[:count, :count], whole[:count, count] = a, b
     exact = expm(whole * time)
     return exact[:count, :count], exact[:count, count]
-
-
-def _secant(gear: Gear, torque: float) -> float:
-    """Return the torque over its twist, from rest [N.m/rad]."""
-    return float(torque / gear.twist([torque])[0])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from math import inf, isfinite, tau
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,11 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Compensation, Drive, arguments, compensation, control, typeset
+from strainwave.analysis.plots import Response, bode_figure, phase_in_degrees, set_phase_ticks
+from strainwave.drawing import marks
+from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.presentation import Pictured, Presented, Row
 from strainwave.tuning.cascade import Plant, Setting, observer_of, tuned_law
 from strainwave.tuning.linear_plant import HeldPlant, LinearPlant
+from strainwave.typeset import number
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +36,9 @@ FREQUENCIES_OF_PEAK = 100  # likewise, around each vibration
 LOWEST_SHARE = 1e-5  # lowest frequency over half the sample rate
 MAX_JUMP = 0.5  # of half a turn of the loop, or of the logarithm of its size, from one frequency to the next
 MAX_POLE_RADIUS = 1.0 + 1e-7  # of a loop that is stable: a free angle has 1
+MAX_FREQUENCY_FACTOR = 30.0  # of the frequencies of the margins, down and up, that is drawn
+MAX_MAGNITUDE = 1e3  # magnitude that is drawn, and its inverse
+PHASE_MARGIN = 20.0  # degrees between the curves and the edge
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +114,6 @@ class LoopMargins(Pictured):
         >>> [axes.get_title(loc="left") for axes in sw.tuning.loop_margins(drive).plot().axes]
         ['magnitude', 'phase [°]']
         """
-        from strainwave.tuning.loops_plot import margins_figure
-
         return margins_figure({"speed loop": self.speed, "position loop": self.position})
 
     def _headline(self) -> str:
@@ -252,7 +258,10 @@ class Loops:
         at_output = np.append(linear.output, np.zeros(3))
         output_held, integral, filtered = unit[count:]
         per_torque = sampled.compensation.actuation_per_torque
-        momentum, passed = _observing(sampled.compensation.observer, plant.period)
+        momentum, passed, observer = 0.0, 0.0, sampled.compensation.observer
+        if isinstance(observer, compensation.DisturbanceObserver):  # what its filter has per speed, and passes in a period
+            momentum = observer.bandwidth * observer.inertia
+            passed = float(-np.expm1(-observer.bandwidth * plant.period))
         actuated = np.append(held.now, np.zeros(3)) + output_held + passed / per_torque * filtered
         actuation = law.speed_integral * integral + (passed > 0.0) * per_torque * (filtered - momentum * speed)
         return cls(
@@ -295,20 +304,13 @@ class Loops:
         highest = np.pi / self.period
         whole = np.geomspace(LOWEST_SHARE * highest, highest, FREQUENCY_COUNT, endpoint=False)
         peaks = [each * np.geomspace(0.8, 1.25, FREQUENCIES_OF_PEAK) for each in self.vibrations if each]
-        found = np.unique(np.concatenate([whole, *peaks]))
-        return np.asarray(found[found < highest])
+        frequencies = np.unique(np.concatenate([whole, *peaks]))
+        return np.asarray(frequencies[frequencies < highest])
 
-    def _response(self, transition: Array, given: NDArray[Any], read: Array, at: Array) -> Complex:
+    def _response(self, transition: Array, driven: NDArray[Any], read: Array, at: Array) -> Complex:
         shift = np.exp(1j * at * self.period)[:, np.newaxis, np.newaxis] * np.eye(len(transition))
-        given = np.broadcast_to(given, (len(at), len(transition)))
-        return np.asarray(np.linalg.solve(shift - transition, given[..., np.newaxis])[..., 0] @ read)
-
-
-def _observing(observer: Any, period: float) -> tuple[float, float]:
-    """Return the momentum per speed of a disturbance observer, and what its filter passes in a period; 0 of any other."""
-    if not isinstance(observer, compensation.DisturbanceObserver):
-        return 0.0, 0.0
-    return observer.bandwidth * observer.inertia, float(-np.expm1(-observer.bandwidth * period))
+        driven = np.broadcast_to(driven, (len(at), len(transition)))
+        return np.asarray(np.linalg.solve(shift - transition, driven[..., np.newaxis])[..., 0] @ read)
 
 
 def _free(held: HeldPlant, speed: Array, momentum: float, passed: float) -> Array:
@@ -350,3 +352,40 @@ def _at_crossings(series: Array, values: Array) -> Array:
     k = np.flatnonzero((np.sign(before) != np.sign(after)) & (np.abs(after - before) < MAX_JUMP))
     share = before[k] / (before[k] - after[k])
     return np.asarray(values[k] + share * (values[k + 1] - values[k]))
+
+
+def margins_figure(margins: Mapping[str, Any]) -> Figure:
+    """Return the Bode diagram of open loops: a triangle at each gain margin, a circle at each phase margin."""
+    loops = [Response(_label(name, each), each.frequency / tau, each.loop) for name, each in margins.items()]
+    figure = bode_figure(loops, "1", "Open loops: ▲ gain margin, ● phase margin")
+    magnitude, phase = figure.axes
+    magnitude.axhline(1.0, color=LIGHT["muted"], linewidth=0.8)
+    phase.axhline(-180.0, color=LIGHT["muted"], linewidth=0.8)
+    ends = [at / tau for each in margins.values() for at in (each.gain_at, each.phase_at) if isfinite(at)]
+    low, high = loops[0].frequency[0], loops[0].frequency[-1]
+    if ends:
+        low, high = min(ends) / MAX_FREQUENCY_FACTOR, min(max(ends) * MAX_FREQUENCY_FACTOR, high)
+    for place, each in enumerate(margins.values()):
+        colour, log_frequency = marks.line_style(place)["color"], np.log(each.frequency)
+        for mark, at in (("^", each.gain_at), ("o", each.phase_at)):
+            if isfinite(at):
+                size = np.exp(np.interp(np.log(at), log_frequency, np.log(np.abs(each.loop))))
+                angle = np.interp(np.log(at), log_frequency, phase_in_degrees(each.loop))
+                magnitude.plot([at / tau], [size], mark, color=colour, markersize=6.0)
+                phase.plot([at / tau], [angle], mark, color=colour, markersize=6.0)
+    shown = [(loop.frequency >= low) & (loop.frequency <= high) for loop in loops]
+    angles = np.concatenate([phase_in_degrees(loop.response)[rows] for loop, rows in zip(loops, shown, strict=True)])
+    sizes = np.abs(np.concatenate([loop.response[rows] for loop, rows in zip(loops, shown, strict=True)]))
+    magnitude.set_xlim(low, high)
+    magnitude.set_ylim(max(float(sizes.min()), 1.0 / MAX_MAGNITUDE), min(float(sizes.max()), MAX_MAGNITUDE))
+    phase.set_ylim(float(angles.min()) - PHASE_MARGIN, float(angles.max()) + PHASE_MARGIN)
+    set_phase_ticks(phase)
+    for axis in (magnitude.xaxis, magnitude.yaxis):
+        marks.set_log_ticks(axis)
+    marks.label_abscissa(phase, "frequency", "Hz")
+    return figure
+
+
+def _label(name: str, margins: Any) -> str:
+    phase = "∞" if margins.phase == inf else f"{number(np.degrees(margins.phase), 2)}°"
+    return f"{name}: gain margin {number(margins.gain, 2)}, phase margin {phase}"

@@ -61,21 +61,17 @@ class Program:
         return len(self.cost)
 
     def solver(self) -> Any:
-        """Return the solver.
-
-        Raises:
-            ImportError: osqp is not installed
-        """
+        """Return the solver."""
         try:
             import osqp
         except ImportError:
             raise ImportError("predictive control solves by osqp: pip install 'strainwave[predictive]'") from None
         from scipy import sparse
 
-        found = osqp.OSQP()
+        solver = osqp.OSQP()
         limited = len(self.rows) - self.horizon
         exceeded = np.eye(len(self.rows), limited, -self.horizon) / np.sqrt(self.penalty)  # costs its square
-        found.setup(
+        solver.setup(
             sparse.block_diag((sparse.triu(self.cost), sparse.eye(limited)), format="csc"),
             np.zeros(self.horizon + limited),
             sparse.csc_matrix(np.hstack((self.rows, -exceeded))),
@@ -88,7 +84,7 @@ class Program:
             rho=STEP_SIZE,
             max_iter=MAX_ITERATIONS,
         )
-        return found
+        return solver
 
 
 class PredictiveController:
@@ -138,7 +134,12 @@ class PredictiveController:
         """
         if seen.time == 0.0:
             self.reset()
-        self._check_period(seen.time)
+        late = 0.0 if self._time is None else seen.time - self._time - self.period
+        if abs(late) > MAX_TIME_ERROR_SHARE * self.period:
+            raise ValueError(
+                f"the controller is called {self.period + late:g} s after the last call, and its design has a period of "
+                f"{self.period:g} s; simulate it with period=controller.period, delay=controller.delay"
+            )
         seen = self._held(seen)
         parameters = np.concatenate((self._measured(seen), self._bias, *self._commanded(seen)))
         self._plan = self._planned(parameters)
@@ -175,18 +176,6 @@ class PredictiveController:
         arrays |= {name: getattr(program, name) for name in ("gradient", "rows", "shift", "bound")}
         write_c(path, self.states, self._program.horizon, constants, arrays)
         return path
-
-    def _check_period(self, time: float) -> None:
-        """
-        Raises:
-            ValueError: the last call was not a period before
-        """
-        if self._time is None or abs(time - self._time - self.period) <= MAX_TIME_ERROR_SHARE * self.period:
-            return
-        raise ValueError(
-            f"the controller is called {time - self._time:g} s after the last call, and its design has a period of "
-            f"{self.period:g} s; simulate it with period=controller.period, delay=controller.delay"
-        )
 
     def _planned(self, parameters: Array) -> Array:
         """Return the actuations of the horizon in efforts. Where no limit acts, they need no solver."""
@@ -259,10 +248,7 @@ class PredictiveModel:
 
     @classmethod
     def of(cls, plant: Plant, linear: LinearPlant, weight: Array, effort: float) -> PredictiveModel:
-        """
-        Raises:
-            ValueError: these weights have no regulator
-        """
+        """"""
         step, driven = linear.held(plant.period, plant.delay).extended
         value, gains = optimal(step, driven, weight, effort)
         held = linear.held(plant.period)
@@ -343,23 +329,14 @@ def mpc(
         raise TypeError(
             f"preview must be a scenario of the command, as sw.scenario.table(…) makes one, not {shortened(preview)}"
         )
-    linear = _linear_of(plant, torque_limit)
+    if torque_limit is not None:
+        torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
+    linear = LinearPlant.of(plant, torque_limit).measured_by_encoders()
     size = 0.1 * plant.limit if effort is None else arguments.number("effort", effort, plant.effort_unit, low=0.0)
     bandwidth = arguments.number("bandwidth", bandwidth, "rad/s", "[)", 0.0)
     model = PredictiveModel.of(plant, linear, linear.cost(error, speed_error), size)
     program = _program(plant, model, _limits(linear, speed_limit, torque_limit), horizon, (LIMIT_ERROR / error) ** 2)
     return PredictiveController(plant, program, model, preview, -float(np.expm1(-bandwidth * plant.period)))
-
-
-def _linear_of(plant: Plant, torque_limit: float | None) -> LinearPlant:
-    """Return the linear model of a drive whose states are all measured.
-
-    Raises:
-        ValueError: it has other states, or the limit is not positive
-    """
-    if torque_limit is not None:
-        torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
-    return LinearPlant.of(plant, torque_limit).measured_by_encoders()
 
 
 def _limits(linear: LinearPlant, speed_limit: float | None, torque_limit: float | None) -> list[Array]:

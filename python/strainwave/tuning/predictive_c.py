@@ -12,7 +12,7 @@ from strainwave.simulation.controller import MAX_SIGNAL
 
 Array = NDArray[np.float64]
 
-HEADER = """\
+HEADER_TEXT = """\
 /* A predictive controller of the position. Written by strainwave; the solver beside it is OSQP (Apache-2.0). */
 #ifndef PREDICTIVE_H
 #define PREDICTIVE_H
@@ -40,7 +40,7 @@ extern int predictive_bad_samples;
 #endif
 """
 
-SOURCE = """\
+SOURCE_TEXT = """\
 #include "predictive.h"
 
 #include "osqp.h"
@@ -163,17 +163,9 @@ double predictive_step(const predictive_measured *measured, const double angle[P
 def write_c(
     folder: Path, states: Sequence[str], horizon: int, constants: dict[str, float], arrays: Mapping[str, Array]
 ) -> None:
-    """Write `predictive.h` and `predictive.c` into the folder of the solver.
-
-    Args:
-        folder: of the solver
-        states: names, in their order
-        horizon: number of actuations that are planned
-        constants: numbers of the controller, by name
-        arrays: of the controller and its program, by name
-    """
+    """Write `predictive.h` and `predictive.c` into the folder of the solver."""
     count, parameters = arrays["shift"].shape
-    source = SOURCE.format(
+    source = SOURCE_TEXT.format(
         states=len(states),
         rows=count,
         parameters=parameters,
@@ -183,7 +175,7 @@ def write_c(
         ),
         arrays="\n".join(f"static const double {name}[] = {{\n{_numbers(array)}}};" for name, array in arrays.items()),
     )
-    (folder / "predictive.h").write_text(HEADER.format(horizon=horizon, max_signal=MAX_SIGNAL), encoding="utf-8")
+    (folder / "predictive.h").write_text(HEADER_TEXT.format(horizon=horizon, max_signal=MAX_SIGNAL), encoding="utf-8")
     (folder / "predictive.c").write_text(source, encoding="utf-8")
 
 

@@ -342,14 +342,10 @@ def position_by_pulses(
     arguments.whole("max_pulses", max_pulses, 1)
     moved_drive = plan.drive if drive is None else arguments.drive(drive)
     rest = _Resting(plan, moved_drive, moved_drive.rest() if initial is None else initial, MAX_DRIFT * tolerance)
-    widths = _corrected(plan, rest, tolerance, max_pulses) if measured else _as_planned(plan, rest)
-    return PulsedMove(plan.travel, tolerance, np.array(widths), np.array(rest.angles), rest.state)
-
-
-def _as_planned(plan: PulsePlan, rest: _Resting) -> list[float]:
-    for width in plan.widths:
+    widths = _corrected(plan, rest, tolerance, max_pulses) if measured else list(plan.widths)
+    for width in () if measured else widths:
         rest.after(width, 1.0)
-    return list(plan.widths)
+    return PulsedMove(plan.travel, tolerance, np.array(widths), np.array(rest.angles), rest.state)
 
 
 def _corrected(plan: PulsePlan, rest: _Resting, tolerance: float, max_pulses: int) -> list[float]:

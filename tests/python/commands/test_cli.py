@@ -159,7 +159,7 @@ def test_an_unwritable_folder_is_refused(tmp_path: Path) -> None:
 
 
 def test_gears_lists_the_catalogue(tmp_path: Path) -> None:
-    result = strainwave("list", "gears", "hfuc-25", folder=tmp_path)
+    result = strainwave("list", "gears", "HFUC_25", folder=tmp_path)
     assert result.returncode == 0
     assert "hfuc-25-100" in result.stdout.split()
 

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.dataset.faults import with_faults
-from strainwave.dataset.members import HEALTHY
-from strainwave.dataset.plan import DatasetPlan
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan
+from strainwave.dataset.sampling import MIXED_SPLIT
 from strainwave.dataset.shards import Shards
-from strainwave.dataset.splits import MIXED
 
 from tests.python.dataset.plans import SMALL, changed, population, shards
 
@@ -74,13 +73,13 @@ def test_no_unit_and_no_condition_is_in_two_splits(faulty: tuple[Shards, list[di
     assert test
     assert not {row["unit"] for row in train} & {row["unit"] for row in test}
     assert not {row["condition"] for row in train} & {row["condition"] for row in test}
-    assert MIXED in {row["split"] for row in all_rows}
+    assert MIXED_SPLIT in {row["split"] for row in all_rows}
 
 
 def test_shares_of_faults_and_splits_are_met_to_one_unit() -> None:
     units = np.arange(1000)
     whole = population(FAULTY | {"units": {"number": 1000}})
-    assert [(whole.unit_faults(units) == name).sum() for name in ("lubrication_loss", "misalignment", HEALTHY)] == [
+    assert [(whole.unit_faults(units) == name).sum() for name in ("lubrication_loss", "misalignment", HEALTHY_LABEL)] == [
         250,
         500,
         250,
@@ -91,7 +90,7 @@ def test_shares_of_faults_and_splits_are_met_to_one_unit() -> None:
 def test_fault_and_split_are_independent() -> None:
     units = np.arange(4000)
     whole = population(FAULTY | {"units": {"number": 4000}})
-    share = (whole.unit_split(units)[whole.unit_faults(units) == HEALTHY] == "test").mean()
+    share = (whole.unit_split(units)[whole.unit_faults(units) == HEALTHY_LABEL] == "test").mean()
     assert share == pytest.approx(0.15, abs=5.0 * np.sqrt(0.15 * 0.85 / 1000))
 
 
@@ -114,7 +113,7 @@ def test_numbers_of_a_member_are_those_of_its_drive_with_its_fault(faulty: tuple
         own = drive.replace({path: row[path] for path in ("motor.resistance", "load.inertia")})
         if row["fault"] == "lubrication_loss":
             own = with_faults(own, [sw.fault.LubricationLoss(severity=row["severity.lubrication_loss"])])
-        elif row["fault"] == HEALTHY:
+        elif row["fault"] == HEALTHY_LABEL:
             assert row["severity.misalignment"] == row["severity.lubrication_loss"] == 0.0
         else:
             continue

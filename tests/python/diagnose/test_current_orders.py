@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi, sqrt, tau
+from math import sqrt, tau
 
 import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.diagnose.current_orders import OrderLine, order_lines, synchronous_average
+from strainwave.diagnose.current_orders import OrderLine, order_lines
 from strainwave.diagnose.detection import threshold_of
-from strainwave.diagnose.motion import motion_of
-from strainwave.diagnose.regression import regressions
+from strainwave.diagnose.regression import motion_of, regressions
 
 from tests.evidence.detection_limits import false_alarms, interval, noises, signature_drive
 
@@ -195,17 +194,3 @@ def test_what_a_record_does_not_determine_has_no_amplitude_and_a_reason() -> Non
 def test_records_without_orders_are_refused(angle: Array, current: Array, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         order_lines(recorded(np.arange(500.0) * 0.01, angle, current), "current", [2.0])
-
-
-def test_the_synchronous_average_has_the_orders_of_the_least_squares() -> None:
-    random = np.random.default_rng(2)
-    angle = np.linspace(0.0, tau * 80.0, 40001)
-    current = 1.0 + 0.1 * np.sin(2.0 * angle + 0.4) + 0.05 * np.sin(5.3 * angle) + random.normal(0.0, 0.05, len(angle))
-    recording = recorded(angle / 10.0, angle, current)
-    curve = synchronous_average(recording, "current")
-    there = 2j * np.mean(curve["current"] * np.exp(-2j * curve["input_angle"]))
-    (line,) = order_lines(recording, "current", [2.0])
-    assert abs(there - line.wave) < 3.0 * line.sigma
-    assert np.angle(there) == pytest.approx(0.4, abs=0.02)
-    assert curve["sigma"].mean() == pytest.approx(sqrt((0.05**2 + 0.05**2 / 2) / (40000 / 128)), rel=0.1)
-    assert curve["input_angle"][0] == pytest.approx(pi / 128)

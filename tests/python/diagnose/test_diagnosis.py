@@ -11,8 +11,9 @@ import pytest
 import strainwave as sw
 from strainwave.diagnose.detection import FALSE_ALARM, threshold_of
 from strainwave.diagnose.diagnosis import Diagnosis, Question, RunDiagnosis, diagnosed
-from strainwave.diagnose.geometry import CurrentPerError, Geometry, Sensitivity
+from strainwave.diagnose.geometry import Geometry, Sensitivity
 from strainwave.diagnose.inversion import MisalignmentEstimate
+from strainwave.diagnose.possible_drives import CurrentPerError
 from strainwave.diagnose.refusals import JointRecording, usable
 from strainwave.report.diagnose import diagnose_summary
 

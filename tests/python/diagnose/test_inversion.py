@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from strainwave.diagnose.inversion import ORDERS, MeasuredOrders, measured_orders
+from strainwave.diagnose.inversion import ERROR_ORDERS, MeasuredOrders, measured_orders
 from strainwave.files.recording import Recording
 
 SAMPLES = 1500
@@ -49,4 +49,4 @@ def test_a_short_ramp_shows_an_order_far_above_its_noise() -> None:
     found = measured(8.0, 1, amplitude=10.0 * SIGMA * np.sqrt(2.0 / SAMPLES))
     assert found.degrees >= 10
     assert found.false_alarm < 1e-3
-    assert len(found.values) == len(ORDERS)
+    assert len(found.values) == len(ERROR_ORDERS)

@@ -7,7 +7,15 @@ from math import pi, radians, tan
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.diagnose.actuator_ramp import ASSUMED, ERROR, OUTPUT, ActuatorRamp, in_series, noises, wave_generator
+from strainwave.diagnose.actuator_ramp import (
+    ASSUMED_MISALIGNMENT,
+    ERROR_PATH,
+    OUTPUT,
+    ActuatorRamp,
+    in_series,
+    noises,
+    wave_generator,
+)
 from strainwave.diagnose.inversion import displaced, harmonics
 from strainwave.diagnose.misalignment_sweep import SHOWN_TILT, SWEEPS, SweepLevels, sweep_misalignment, swing
 from strainwave.native import kernels
@@ -26,7 +34,7 @@ def ramp() -> ActuatorRamp:
 @pytest.fixture(scope="module")
 def levels(ramp: ActuatorRamp) -> dict[str, SweepLevels]:
     """All sweeps with the assumed dimensions."""
-    law = ASSUMED.replace(offset=4e-3)
+    law = ASSUMED_MISALIGNMENT.replace(offset=4e-3)
     return {combine: sweep_misalignment(ramp, law.replace(combine=combine)) for combine in ("single", "mean", "max")}
 
 
@@ -82,7 +90,7 @@ def test_a_tilt_acts_as_the_eccentricity_that_it_makes_at_the_offset(ramp: Actua
 
 
 def test_a_place_of_the_shaft_is_the_vector_that_harmonics_tell() -> None:
-    law = displaced(ASSUMED, (3e-6, -4e-6), c_x=-2e-6)
+    law = displaced(ASSUMED_MISALIGNMENT, (3e-6, -4e-6), c_x=-2e-6)
     assert law.eccentricity == pytest.approx((3e-6, -4e-6))
     assert harmonics(law)[0] == pytest.approx(PER_METRE * (-1j * 3e-6 + 4e-6), rel=1e-3)  # -(m_x cos + m_y sin)
     assert law.generator_eccentricity == 2e-6
@@ -119,7 +127,7 @@ def test_stages_in_series_swing_as_the_stages_do() -> None:
     law = wave_generator(staged.drive)[0].replace(combine="single")
     swings = []
     for ramp in (staged, in_series(staged)):
-        changes = [{f"{ERROR}.housing_eccentricity": size} for size in (0.0, 20e-6)]
+        changes = [{f"{ERROR_PATH}.housing_eccentricity": size} for size in (0.0, 20e-6)]
         runs = ramp.without_noise().with_error(law).many(changes, ["torque", "current"])
         last = [runs.member(place).between(0.5, 1.1) for place in (0, 1)]
         swings.append([swing(last[1][name] - last[0][name]) for name in ("torque", "current")])
@@ -156,7 +164,7 @@ def test_an_output_that_is_moved_from_outside_is_refused() -> None:
 def test_a_drive_that_does_not_follow_is_refused() -> None:
     weak = sw.load("tilt-actuator-lumped").replace({"motor.current_limit": 0.05})
     with pytest.raises(ValueError, match=r"^the drive does not follow a ramp of 60 deg in 3 s: its input turns by \S+ rad"):
-        ActuatorRamp.of(weak, *SHORT).many([{f"{ERROR}.housing_tilt_x": tilt} for tilt in (0.0, 1e-3)], ["torque"])
+        ActuatorRamp.of(weak, *SHORT).many([{f"{ERROR_PATH}.housing_tilt_x": tilt} for tilt in (0.0, 1e-3)], ["torque"])
 
 
 def test_every_turn_of_the_input_has_rows_enough_for_its_orders() -> None:

@@ -7,8 +7,7 @@ import pytest
 import strainwave as sw
 from strainwave.diagnose.diagnosis import Question, RunDiagnosis, diagnosed
 from strainwave.diagnose.refusals import usable
-from strainwave.diagnose.smallest_error import detection_limit
-from strainwave.diagnose.steady_run import COLUMN, SteadyRun
+from strainwave.diagnose.smallest_error import CURRENT_COLUMN, SteadyRun, detection_limit
 
 from tests.evidence.detection_limits import signature_drive
 from tests.support.signature_drive import signature_ramp
@@ -18,7 +17,9 @@ SEEDS = 6  # the level of the noise of one record has a standard deviation of 11
 
 
 def noisy(record: sw.Recording, noise: float, seed: int) -> sw.Recording:
-    return record.with_column(COLUMN, record[COLUMN] + np.random.default_rng(seed).normal(0.0, noise, len(record)), "A")
+    return record.with_column(
+        CURRENT_COLUMN, record[CURRENT_COLUMN] + np.random.default_rng(seed).normal(0.0, noise, len(record)), "A"
+    )
 
 
 def diagnosis(record: sw.Recording, gear_set: sw.GearSet) -> RunDiagnosis:
@@ -29,7 +30,7 @@ def to_and_fro() -> sw.Recording:
     """Record of a speed that turns round under 20 N.m, each direction for 10 s."""
     drive = signature_drive()
     command = sw.scenario.sine(amplitude=0.1, frequency=0.05, duration=20.0)
-    run = sw.simulate(drive, command, sample=2e-3, load_torque=20.0, record=["input_angle", "output_angle", COLUMN])
+    run = sw.simulate(drive, command, sample=2e-3, load_torque=20.0, record=["input_angle", "output_angle", CURRENT_COLUMN])
     return noisy(run, NOISE, 0)
 
 

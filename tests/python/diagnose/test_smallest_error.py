@@ -10,8 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave.diagnose.current_orders import order_lines
 from strainwave.diagnose.detection import needed_signal_to_noise
-from strainwave.diagnose.smallest_error import DetectionLimit, detection_limit
-from strainwave.diagnose.steady_run import COLUMN
+from strainwave.diagnose.smallest_error import CURRENT_COLUMN, DetectionLimit, detection_limit
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 
 from tests.evidence.detection_limits import (
@@ -110,8 +109,8 @@ def test_order_lines_detects_what_was_planned() -> None:
     record = case.record(limit.amplitude)
     random, draws, found = np.random.default_rng(8), 150, 0
     for _ in range(draws):
-        noisy = record.with_column(COLUMN, record[COLUMN] + random.normal(0.0, case.noise, len(record)), "A")
-        found += order_lines(noisy, COLUMN, [2.0])[0].detected
+        noisy = record.with_column(CURRENT_COLUMN, record[CURRENT_COLUMN] + random.normal(0.0, case.noise, len(record)), "A")
+        found += order_lines(noisy, CURRENT_COLUMN, [2.0])[0].detected
     assert found / draws == pytest.approx(0.9, abs=3.0 * sqrt(0.09 / draws))
 
 

@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given, strategies as st
-from strainwave.files import ratings
 from strainwave.files.entries import Quantity
-from strainwave.files.gear_set import GearSet
+from strainwave.files.gear_set import GearSet, loaded_set
 
 LIMITS = {
     "rated_torque": 10.0,
@@ -195,13 +194,13 @@ def test_a_run_with_the_gear_of_a_data_sheet_warns_of_the_limits_of_the_sheet(tm
     sw.simulate(drive.replace(gear=gear.replace(damping=1.01 * gear.damping)), held, load_torque=165.0)  # another gear
 
 
-def test_so_many_loaded_gears_are_remembered_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ratings, "_REMEMBERED", {})
-    sets = [rated(peak_torque=Quantity(value=1.0, unit="N.m", source="x")) for _ in range(ratings.MAX_REMEMBERED + 1)]
-    sets = [each.replace(gear=each.gear.replace(damping=1.0 + place)) for place, each in enumerate(sets)]
-    for each in sets:
-        ratings.remember(each)
-    assert list(ratings._REMEMBERED.values()) == sets[1:]
+def test_the_sets_of_so_many_loaded_gears_are_kept_and_no_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("strainwave.files.gear_set.MAX_LOADED_SETS", 2)
+    gears = []
+    for ratio in (50, 80, 100):
+        (tmp_path / f"{ratio}.toml").write_text(SHEET.replace("-100", f"-{ratio}"))
+        gears.append(sw.load(tmp_path / f"{ratio}.toml"))
+    assert [loaded_set(gear) is not None for gear in gears] == [False, True, True]
 
 
 def test_a_run_within_all_limits_warns_of_none() -> None:

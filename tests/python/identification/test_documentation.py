@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from strainwave.identification.candidates import ripple
-from strainwave.identification.checks import comparisons, shape, sizes, unexplained
+from strainwave.identification.candidates import motion_model
+from strainwave.identification.checks import comparisons, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
@@ -34,9 +34,9 @@ def percent(share: float) -> str:
         f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
         f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
-        f"with an RMS of more than {percent(shape.MAX_SHARE_OF_SHAPE)} of what varies",
-        f"Noise repeats as well in 1 of {1.0 / shape.MAX_CHANCE:g} records",
-        f"A shape of {100.0 * shape.MIN_SHARE_OF_SHAPE:g} to {percent(shape.MAX_SHARE_OF_SHAPE)} is a remark",
+        f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of what varies",
+        f"White noise repeats as well in 1 of {1.0 / unexplained.MAX_CHANCE_OF_SHAPE:g} records",
+        f"A shape of {100.0 * unexplained.MIN_SHARE_OF_SHAPE:g} to {percent(unexplained.MAX_SHARE_OF_SHAPE)} is a remark",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
         f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small, "
         f"in a log more than {sizes.MAX_FACTOR_OF_LOG:g}",
@@ -50,9 +50,9 @@ def percent(share: float) -> str:
         f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
         f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
-        f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - ripple.MIN_OWN_SHARE**2), 3))} move the other way",
-        f"a probability of {percent(ripple.MAX_CHANCE)} at most",
-        f"uncertain by {percent(ripple.BIAS_IN_FULL_BAND)} at least",
+        f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - motion_model.MIN_OWN_SHARE**2), 3))} move the other way",
+        f"a probability of {percent(motion_model.MAX_CHANCE)} at most",
+        f"uncertain by {percent(motion_model.BIAS_IN_FULL_BAND)} at least",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

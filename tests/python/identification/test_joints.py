@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
+from strainwave.identification.reading.joints import joints_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import joints_of
 
 from tests.evidence import arms
 from tests.python.command import strainwave

@@ -14,7 +14,7 @@ import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Covariance, Validation
-from strainwave.identification.results.changes import PartChange
+from strainwave.identification.results.prediction import PartChange
 from strainwave.report.predict import predict_summary, verdict_sentence
 
 from tests.evidence.arms import Joint, Recorder, fourier, rtde, run

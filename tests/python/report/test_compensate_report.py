@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.report.compensate import compensate_files, compensate_summary, too_much
-from strainwave.tuning.conditions import OverCompensation
+from strainwave.tuning.judging import OverCompensation
 
 from tests.python.report.reading import Page
 from tests.support.compensated_joint import robot_joint

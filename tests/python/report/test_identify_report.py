@@ -17,11 +17,10 @@ from strainwave.files.recording import Recording
 from strainwave.identification.checks.comparisons import between_files
 from strainwave.identification.identify import Identified
 from strainwave.identification.reading.recognise import recognise
-from strainwave.identification.results import picture_plot
-from strainwave.identification.results.check import Check
+from strainwave.identification.results import pictures
 from strainwave.identification.results.combined_parameter import combine
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Look, Picture
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.file_result import Check, FileEstimate, FileResult, HeldOut
+from strainwave.identification.results.pictures import Look, Picture
 from strainwave.parameters import gear_numbers
 from strainwave.report import identify_figures
 from strainwave.report.identify import identify_report
@@ -231,9 +230,9 @@ def test_the_fitted_loop_is_a_line_through_the_points() -> None:
 def test_what_is_left_of_two_encoders_is_what_orders_and_loads_do_not_explain() -> None:
     given = curves("time")
     left = np.arange(6.0)
-    assert picture_plot.residual_of(given).tolist() == (given["torque"] - given["modelled"]).tolist()
+    assert pictures.residual_of(given).tolist() == (given["torque"] - given["modelled"]).tolist()
     with_rest = given.with_column("residual", left, "N.m")
-    assert picture_plot.residual_of(with_rest).tolist() == left.tolist()
+    assert pictures.residual_of(with_rest).tolist() == left.tolist()
 
 
 def test_numbers_are_called_what_their_law_calls_them() -> None:

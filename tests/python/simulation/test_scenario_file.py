@@ -14,7 +14,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given, strategies as st
 from strainwave import scenario
-from strainwave.simulation.scenario_file import KINDS, ScenarioFile
+from strainwave.simulation.scenario_file import SIGNAL_KINDS, ScenarioFile
 
 from tests.support.scenarios import RAMP_AND_SINE, TURNED
 
@@ -74,7 +74,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", SIGNAL_KINDS)
 def test_each_kind_is_the_function_of_its_name(kind: str, tmp_path: Path) -> None:
     lines = "".join(f"{key} = {value}\n" for key, value in ARGUMENTS[kind].items())
     found = read(tmp_path, f'duration = 1.0\n[command]\nkind = "{kind}"\n{lines}')
@@ -140,10 +140,10 @@ def signals(draw: Callable[..., Any]) -> scenario.Scenario:
 
 
 def made(kind: str) -> scenario.Scenario:
-    return KINDS[kind](**ARGUMENTS[kind], **({} if kind == "table" else {"duration": 1.0}))
+    return SIGNAL_KINDS[kind](**ARGUMENTS[kind], **({} if kind == "table" else {"duration": 1.0}))
 
 
-KNOWN = signals() | st.sampled_from([made(kind) for kind in KINDS])
+KNOWN = signals() | st.sampled_from([made(kind) for kind in SIGNAL_KINDS])
 
 
 @given(KNOWN, KNOWN | numbers, st.text(st.characters(categories=["L", "P"]), max_size=8))
@@ -159,7 +159,7 @@ def test_what_is_saved_is_read_back_equal(
 @pytest.mark.parametrize("kind", ["constant", "step", "ramp", "sine", "chirp"])
 def test_what_a_kind_can_say_is_saved_as_this_kind(kind: str, tmp_path: Path) -> None:
     given = {key: value for key, value in ARGUMENTS[kind].items() if key != "offset"}
-    ScenarioFile(KINDS[kind](**given, duration=1.0)).save(tmp_path / "saved.toml", OPEN)
+    ScenarioFile(SIGNAL_KINDS[kind](**given, duration=1.0)).save(tmp_path / "saved.toml", OPEN)
     text = (tmp_path / "saved.toml").read_text()
     assert f'kind = "{kind}"' in text
     assert "pieces" not in text

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import _core
-from strainwave.simulation.run import METHODS
+from strainwave.simulation.run import METHOD_WORDS
 from strainwave.simulation.signals import outputs
 
 from tests.support.reference_drive import DRIVE
@@ -71,7 +71,7 @@ every_place = pytest.mark.parametrize("place", ["friction_input", "friction_mesh
 
 
 def by_every_method(drive: sw.Drive, voltage: sw.scenario.Scenario, **others: Any) -> dict[str, sw.Recording]:
-    runs: dict[str, sw.Recording] = {method: sw.simulate(drive, voltage, method=method, **others) for method in METHODS}
+    runs: dict[str, sw.Recording] = {method: sw.simulate(drive, voltage, method=method, **others) for method in METHOD_WORDS}
     runs["adaptive"] = sw.simulate_adaptively(drive, voltage, **{"sample": 2e-4} | others)
     return runs
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.statistics.covariance import covariance_of, posterior_of
 from strainwave.statistics.residuals import autoregression, correlation_length, spectrum
-from strainwave.statistics.student import ONE_SIGMA, student
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 Array = NDArray[np.float64]
 N = 600

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import signal
-from strainwave.statistics.spectrum import bandwidth, mean_power, segment_power
+from strainwave.statistics.spectrum import bandwidth, floor_under, mean_power, segment_power, taper
 
 
 @pytest.mark.parametrize("samples", [2, 63, 64, 257])
@@ -28,3 +28,13 @@ def test_segments_are_those_of_a_spectrogram(repeated: int) -> None:
     )
     assert frequency == pytest.approx(expected_frequency)
     np.testing.assert_allclose(power, expected.T, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [3000, 3001])
+def test_coordinates_have_the_inner_products_of_the_whitened_series(count: int) -> None:
+    random = np.random.default_rng(1)
+    series = np.cumsum(random.standard_normal((count, 3)), axis=0) + 5.0
+    floor = floor_under(series[:, 0] * taper(count), taper(count))
+    white, coordinates = floor.whitened(series), floor.coordinates(series)
+    np.testing.assert_allclose(coordinates.T @ coordinates, white.T @ white, rtol=1e-10, atol=1e-8)
+    np.testing.assert_allclose(floor.coordinates(series[:, 1]), coordinates[:, 1], rtol=1e-12)

@@ -9,7 +9,7 @@ import pytest
 import strainwave as sw
 from numpy.typing import NDArray
 from scipy.linalg import expm
-from strainwave.tuning.kalman import filter_gain
+from strainwave.tuning.linear_quadratic import filter_gain
 
 Array = NDArray[np.float64]
 ROTOR, ARM, RATIO, SPRING, DAMPING = 1e-4, 0.6, 100.0, 2e4, 15.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.tuning.steady_torque import steady_torque
+from strainwave.tuning.cascade import steady_torque
 
 GEAR = sw.Gear(
     kinematics=sw.kinematics.StrainWave(flexspline_teeth=200, circular_spline_teeth=202, fixed="circular_spline"),

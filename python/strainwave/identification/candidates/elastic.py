@@ -4,37 +4,50 @@ The input is moved as it was measured, and the output of a model is compared wit
 motor nor friction take part. The log determines ratios of the output stage: if inertia, gravity, stiffness, damping and
 hysteresis were all twice as large, it would move in the same way. One torque must be known otherwise; the log along its motion
 determines it, as gravity or inertia of the load (`candidates.motion`).
+
+A convex problem gives the initial values: both angles give the twist, the motion of the output the torque. For given knees and
+slip twists the torque is linear in positive stiffnesses (`torsion.springs`), so each kind of spring with each count of Maxwell
+elements has one answer. A stiffening spring and a slipping element can imitate each other: they are chosen together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, kinematic_error, stiffness
+from strainwave import Drive, _core, kinematic_error, loads, stiffness
+from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.elastic_starts import UNREACHED_TORQUE, ElasticStart, elastic_starts
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.candidates.torsion.candidate import merged
-from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs
-from strainwave.identification.experiments.driven_log import MAX_CUTOFF_SHARE, DrivenLog
+from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs, unit_traces
+from strainwave.identification.candidates.torsion.springs import (
+    CUBIC,
+    LINEAR,
+    THREE_SEGMENT,
+    Answer,
+    Choice,
+    Library,
+    Piecewise,
+    solve,
+)
+from strainwave.identification.experiments.drive_log import MAX_DRIVEN_CUTOFF_SHARE, DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import motion_of, spectra
-from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of, needed_torque
-from strainwave.identification.fitting.blocks import sigma_by_blocks
+from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, transmitted_torque
 from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
-from strainwave.identification.fitting.unknowns import plan
-from strainwave.statistics.gain import MIN_GAIN_SIGMA, sigmas_of_gain
-from strainwave.statistics.linear_fit import linear_fit
-from strainwave.statistics.order_waves import order_waves
+from strainwave.identification.fitting.unknowns import Estimate, plan
+from strainwave.statistics.linear_fit import linear_fit, order_waves, solved
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain
 
 Array = NDArray[np.float64]
 
@@ -61,6 +74,15 @@ SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 GRAVITY = "load.gravity_torque"
 FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
 WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
+Rows = NDArray[np.bool_]
+
+MAX_ELEMENTS = 2
+SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
+MAX_ROWS = 3000  # of the regression
+MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
+UNREACHED_TORQUE = 1e6  # N.m: a knee there does nothing
+MIN_TORQUE_SHARE = 2e-3  # of the largest torque: an element that carries less is none
+LEFT_OUT_BLOCKS = 12  # of a record, which differ in their motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,10 +135,10 @@ def fit_elastic(
     blocks = _training_blocks(log.motion.time)
     starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
     if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
-        found = _fitted(recording, log, starts, scale, reach, delayed=True)
-        delay = next(each.value for each in found.fit.estimates if each.path == DELAY)
+        late_output = _fitted(recording, log, starts, scale, reach, delayed=True)
+        delay = next(each.value for each in late_output.fit.estimates if each.path == DELAY)
         if abs(delay) < MAX_DELAY_SAMPLES * log.motion.step:
-            return found
+            return late_output
     return _fitted(recording, log, starts, scale, reach, delayed=False)
 
 
@@ -129,12 +151,12 @@ def _fitted(
     best, rivals = _chosen(compared, starts, scale, reach)
     whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
     problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
-    found = fit_of(problem, x, problem.weights(x))
-    sigmas = sigma_by_blocks(problem, x, found.estimates)
-    apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in found.estimates])
+    whole_fit = fit_of(problem, x, problem.weights(x))
+    sigmas = sigma_by_blocks(problem, x, whole_fit.estimates)
+    apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in whole_fit.estimates])
     twist = float(np.std(whole.measured[0] - whole.angle / drive.gear.kinematics.ratio))
-    reached = float(np.abs(whole.gear_torque(found.model)).max())
-    return ElasticCandidate(best.name, found, np.hypot(sigmas, apart), best.error, twist, reached)
+    reached = float(np.abs(whole.gear_torque(whole_fit.model)).max())
+    return ElasticCandidate(best.name, whole_fit, np.hypot(sigmas, apart), best.error, twist, reached)
 
 
 def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_error.Fourier) -> tuple[float, float]:
@@ -165,14 +187,6 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
     return reach, float(late)
 
 
-def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
-    """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
-    ratio = drive.gear.kinematics.ratio
-    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS)
-    still = drive.replace(gear=gear.replace(input_inertia=0.0), motor=drive.motor.replace(inertia=MIN_INERTIA))
-    return np.asarray(ratio * needed_torque(still, log.motion, log.extra)[0])
-
-
 def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bool) -> DrivenLog:
     """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates.
 
@@ -199,7 +213,7 @@ def _cutoff_of_signal(recording: Recording) -> float | None:
     frequency, acceleration, noise, _ = spectra(angle, step)
     signal = frequency[acceleration > MIN_SIGNAL * noise]
     cutoff = CUTOFF_MARGIN * float(signal.max(initial=0.0))
-    return cutoff if 0.0 < cutoff < MAX_CUTOFF_SHARE / step else None
+    return cutoff if 0.0 < cutoff < MAX_DRIVEN_CUTOFF_SHARE / step else None
 
 
 def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) -> Recording:
@@ -331,21 +345,19 @@ def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
 
 
 def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel | None:
-    """Return the model fitted from a start; None if it leaves what its law allows."""
+    """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
+    free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
-        return _tried(log, drive, scale, reach)
+        problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+        fitted: Any = problem.records[0].model(x)
+        ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
         return None
-
-
-def _tried(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel:
-    free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
-    problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
-    fitted: Any = problem.records[0].model(x)
     if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
-        raise ValueError("the bend of the spring lies beyond the torque of the log")
-    ((predicted, _),) = problem.predict(x)
-    return _TriedModel(_name(drive), free, fitted, (log.measured - predicted)[0, ~training])
+        return None
+    count = len(fitted.gear.hysteresis.stiffness)
+    name = f"{fitted.gear.stiffness.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
+    return _TriedModel(name, free, fitted, (log.measured - predicted)[0, ~training])
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
@@ -373,8 +385,165 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
             yield path
 
 
-def _name(drive: Drive) -> str:
-    """Return the model of the gear in words."""
-    gear: Any = drive.gear
-    spring, count = gear.stiffness, len(gear.hysteresis.stiffness)
-    return f"{spring.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
+# ---- Initial values by a convex problem ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticStart(ComparedByFields):
+    """A kind of spring with a count of Maxwell elements, by regression.
+
+    Attributes:
+        drive: with them
+        error: rms error of the torque on data held out [N.m]
+    """
+
+    drive: Drive
+    error: float
+
+
+def elastic_starts(
+    recording: Recording, log: MotionLog, drive: Drive, torque: Array, late: Array, blocks: Rows, *, by_gravity: bool
+) -> list[ElasticStart]:
+    """Return the best spring of each kind with each count of Maxwell elements, the smallest error first.
+
+    Args:
+        recording: `output_angle`, which counts in the sense of the drive's ratio
+        log: the same along its motion
+        drive: with the load by the log along its motion
+        torque: that a rigid gear transmits along the motion [N.m], shape (m,)
+        late: angle by which a delay of the output shifts the twist [rad], shape (m,)
+        blocks: instants of the motion that take part, shape (m,); the others validate
+        by_gravity: True if the torque counts from gravity, so that the inertia of the load is unknown; else gravity is
+    """
+    motion, ratio, load = log.motion, drive.gear.kinematics.ratio, inertia_of(drive)
+    output = motion_of(recording.time, recording.values("output_angle", "rad"), motion.cutoff)
+    angle, acceleration = (np.interp(motion.time, output.time, each) for each in (output.angle, output.acceleration))
+    twist = motion.angle / ratio - angle - late - np.asarray(drive.gear.kinematic_error.error(motion.angle))
+    used = motion.known & np.isfinite(twist)
+    twist = twist - 0.5 * (twist[used].max() + twist[used].min())
+    half = float(np.abs(twist[used]).max())
+    rate = np.gradient(twist, motion.time)
+    swing = np.sin(motion.angle / ratio), np.cos(motion.angle / ratio)
+    free = [acceleration, swing[1]] if by_gravity else [*swing]
+    free += [np.ones_like(twist), motion.speed]
+    size = float(np.abs(torque[used]).max())
+    scaled = [each * size / max(float(np.abs(each[used]).max()), 1e-300) for each in free]
+    always = np.column_stack([rate, *scaled, *(-each for each in scaled)])
+    needed = torque + load * (acceleration - motion.acceleration / ratio)
+    rows = np.flatnonzero(used)
+    rows = rows[:: -(-len(rows) // MAX_ROWS)]
+    training = blocks[rows]
+    memory = np.column_stack(unit_traces(twist, half * SLIPS))
+    starts = []
+    for count in range(MAX_ELEMENTS + 1):
+        elements = _elements(memory[rows], half, count)
+        for spring in SPRINGS:
+            libraries = [elements, spring.library(twist[rows], half, drive.gear)]
+            try:
+                (answer, *_) = solve(
+                    needed[rows][training],
+                    [replace(each, torques=each.torques[training]) for each in libraries],
+                    always[rows][training],
+                )
+            except ValueError:
+                continue
+            gear: Any = answer.put(drive.gear)
+            if len(pairs(gear)) < count:
+                continue  # the same with fewer elements
+            error = float(np.std((needed[rows] - _predicted(answer, libraries, always[rows]))[~training]))
+            critical = 2.0 * float(np.sqrt(gear.stiffness.tangent(0.0) * load))
+            gear = gear.replace(damping=max(float(answer.weights[-1][0]), MIN_START_DAMPING * critical))
+            begun = drive.replace(gear=gear, load=_load(drive, answer.weights[-1], scaled, free, by_gravity))
+            starts.append(ElasticStart(begun, error))
+    if not starts:
+        raise ValueError("no spring explains the angle between the shafts")
+    return sorted(starts, key=lambda each: each.error)
+
+
+class _TwoSegments(Piecewise):
+    """Two segments, as the first two of three, whose last one the record does not reach."""
+
+    words = "three-segment spring"
+
+    def library(self, twist: Array, half: float, gear: Gear) -> Library:
+        two_segments = super().library(twist, half, gear)
+        return Library(two_segments.torques, tuple(replace(each, put=_two_segments(each.put)) for each in two_segments.choices))
+
+
+def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array], Gear]:
+    def put_as_three(gear: Gear, weights: Array) -> Gear:
+        spring: Any = put(gear, weights).stiffness
+        k2 = spring.k1 + spring.k2
+        bent = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=spring.k1 * spring.knee, t2=UNREACHED_TORQUE)
+        return gear.replace(stiffness=bent)
+
+    return put_as_three
+
+
+SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
+
+
+def _elements(torques: Array, half: float, count: int) -> Library:
+    """Return the library of a count of elements that slip at different twists."""
+
+    def choice(places: tuple[int, ...]) -> Choice:
+        def put(gear: Gear, weights: Array) -> Gear:
+            every = [(float(k), float(k) * half * float(SLIPS[place])) for k, place in zip(weights, places, strict=True)]
+            largest = float(np.abs(torques).max()) * max((k for k, _ in every), default=0.0)
+            return gear.replace(hysteresis=maxwell([each for each in every if each[1] > MIN_TORQUE_SHARE * largest]))
+
+        return Choice(places, put)
+
+    return Library(torques, tuple(choice(places) for places in combinations(range(len(SLIPS)), count)))
+
+
+def _predicted(answer: Answer, libraries: list[Library], always: Array) -> Array:
+    """Return the torque by an answer [N.m]."""
+    parts = zip(libraries, answer.choices, answer.weights, strict=False)
+    return sum((library.torques[:, list(choice.columns)] @ w for library, choice, w in parts), always @ answer.weights[-1])
+
+
+def _load(drive: Drive, weights: Array, scaled: list[Array], free: list[Array], by_gravity: bool) -> loads.Pendulum | Any:
+    """Return the load with the change of its inertia by the regression, which is less than what the motor has besides."""
+    if not by_gravity:
+        return drive.load
+    count = len(free)
+    shift = float(weights[1] - weights[1 + count]) * float(np.abs(scaled[0]).max() / max(np.abs(free[0]).max(), 1e-300))
+    carried: Any = drive.load
+    return carried.replace(inertia=max(carried.inertia - shift, 0.1 * carried.inertia))
+
+
+# ---- Standard deviations ---------------------------------------------------------------------------------------------
+
+
+def sigma_by_blocks(problem: Problem, x: Array, estimates: Sequence[Estimate]) -> Array:
+    """Return the standard deviation of each estimate, shape (p,): that of the fit, or of the jackknife if it is larger.
+
+    The covariance of a fit takes residuals for noise. If the model lacks something, residuals depend on the motion, and
+    estimates change from one part of a record to another by more than noise moves them. The jackknife contains that (Tukey
+    1958; over blocks of correlated series: Künsch 1989). Each step is one of Gauss and Newton, so that nothing is simulated
+    again. It does not contain an error that moves all blocks alike.
+
+    Args:
+        problem: least squares
+        x: the unknowns that solve it
+        estimates: of the unknowns, none of them tied to another
+    """
+    weights = problem.weights(x)
+    jacobian, (of_priors, _) = problem.jacobian(x, weights), problem.prior_rows()
+    residuals = problem.residuals(x)
+    left = np.concatenate([(each.rows * row).ravel() for each, row in zip(weights, residuals, strict=True)])
+    place = np.concatenate([np.tile(np.arange(row.shape[1]) * LEFT_OUT_BLOCKS // row.shape[1], len(row)) for row in residuals])
+    size = np.linalg.norm(np.concatenate((jacobian, of_priors)), axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    rows, before = jacobian / size, of_priors / size
+    whole, moved = rows.T @ rows + before.T @ before, rows.T @ left
+    steps = []
+    for block in range(LEFT_OUT_BLOCKS):
+        here = place == block
+        rest = whole - rows[here].T @ rows[here]
+        steps.append(solved(rest, moved - rows[here].T @ left[here]) / size)
+    off = np.array(steps) - np.mean(steps, axis=0)
+    by_blocks = np.sqrt((LEFT_OUT_BLOCKS - 1) / LEFT_OUT_BLOCKS * np.sum(off**2, axis=0))
+    sigmas: Array = np.maximum(np.array([each.sigma for each in estimates]), by_blocks)
+    return sigmas

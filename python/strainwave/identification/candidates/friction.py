@@ -24,9 +24,8 @@ from strainwave.identification.candidates.steady_shapes import (
     with_conditions,
 )
 from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.fitting.estimate import Estimate
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
-from strainwave.identification.fitting.unknowns import plan
+from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.residuals import chance_of_gain
 from strainwave.statistics.scale import robust_sigma
 
@@ -141,11 +140,11 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
         RuntimeWarning: rows that lie so far from all others that the fits leave them out, which halves the error or more; they
             are those that `fit.training` does not have
     """
-    known = _known(gear.friction_input, table)
-    if not isinstance(known, Plain):
+    law_before = _known(gear.friction_input, table)
+    if not isinstance(law_before, Plain):
         names = [law.name for law in get_args(Plain)]
         raise ValueError(
-            f"a friction table cannot be fitted to {known.name} friction; "
+            f"a friction table cannot be fitted to {law_before.name} friction; "
             f"it can to {', '.join(names[:-1])} or {names[-1]}, so start from a gear with one of these at the input"
         )
     speeds = len(np.unique(table.speed))
@@ -156,12 +155,12 @@ def fit_friction(table: FrictionTable, gear: Gear) -> list[FrictionCandidate]:
     tried, trusted = _without_outliers(table, gear)
     _, best = _chosen(tried)
     others = sorted((candidate for _, candidate in tried if candidate is not best), key=lambda candidate: candidate.error)
-    found = [best, *others]
+    ranked = [best, *others]
     if not trusted.all():
         _warn(table, trusted, best)
-        found = [_on_all(each, table, trusted) for each in found]
-    found[0] = _widened_by_choice(*found)
-    return [replace(each, fit=written(each, gear, table)) for each in found]
+        ranked = [_on_all(each, table, trusted) for each in ranked]
+    ranked[0] = _widened_by_choice(*ranked)
+    return [replace(each, fit=written(each, gear, table)) for each in ranked]
 
 
 def innermost(law: Any) -> Any:
@@ -215,7 +214,7 @@ def outliers(off: Array) -> NDArray[np.bool_]:
 def _tried(table: FrictionTable, gear: Gear) -> list[tuple[Shape, FrictionCandidate]]:
     """Return every law that the table may determine, those over the speed first."""
     shapes = [*over_speed(table), *(under_load(table, gear.kinematics.ratio) if is_loaded(table) else ())]
-    tried = [(shape, found) for shape in shapes if _falls(found := _candidate(shape, table, gear))]
+    tried = [(shape, candidate) for shape in shapes if _falls(candidate := _candidate(shape, table, gear))]
     shape, best = _chosen(tried)
     mesh = shape.mesh and best.fit.gear.friction_mesh
     wider = with_conditions(table, replace(shape, law=best.law, mesh=mesh), best.fit.residuals[0])
@@ -283,7 +282,9 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
     def as_good(candidate: FrictionCandidate) -> bool:
         worse = _squares(candidate) - squares
         within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
-        return within or (candidate.parameters < best.parameters and _chance(candidate, best) > MAX_CHANCE)
+        more = best.parameters - candidate.parameters
+        before, left = candidate.fit.residuals[0], best.fit.residuals[0]
+        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
 
@@ -299,10 +300,10 @@ def _widened_by_choice(best: FrictionCandidate, *others: FrictionCandidate) -> F
         return best
 
     def sigma(estimate: Estimate) -> float:
-        found = [(each.information, other) for each in others if (other := each.estimate(estimate)) is not None]
+        alike = [(each.information, other) for each in others if (other := each.estimate(estimate)) is not None]
         counted = [
             (best.information, estimate),
-            *((i, other) for i, other in found if other.sigma < MAX_RELATIVE_SIGMA * abs(other.value)),
+            *((i, other) for i, other in alike if other.sigma < MAX_RELATIVE_SIGMA * abs(other.value)),
         ]
         weights = np.exp([0.5 * (least - information) for information, _ in counted])
         strays = [float(np.hypot(other.sigma, other.value - estimate.value)) for _, other in counted]
@@ -317,11 +318,6 @@ def _squares(candidate: FrictionCandidate) -> Array:
     return squares
 
 
-def _chance(simplest: FrictionCandidate, candidate: FrictionCandidate) -> float:
-    more = candidate.parameters - simplest.parameters
-    return by_chance(simplest.fit.residuals[0], candidate.fit.residuals[0], more, candidate.parameters) if more > 0 else 1.0
-
-
 def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
     """Return the probability that `more` unknowns shrink white residuals as much by chance (F test), of `unknowns` in all."""
     return chance_of_gain(float(np.sum(before**2)), float(np.sum(left**2)), more, len(left) - unknowns)
@@ -329,10 +325,10 @@ def by_chance(before: Array, left: Array, more: int, unknowns: int) -> float:
 
 def written(candidate: FrictionCandidate, gear: Gear, table: FrictionTable) -> Fit:
     """Return the fit with the law as the gear shall have it: with its bristles, and its ratio of breakaway without a fall."""
-    known = _known(gear.friction_input, table)
+    law_before = _known(gear.friction_input, table)
     fell = any(estimate.path.endswith("breakaway") for estimate in candidate.fit.estimates)
     with warnings.catch_warnings(action="ignore", category=PassivityWarning):
-        law, mesh = _kept(candidate.law, known, fell), _completed(candidate.fit)
+        law, mesh = _kept(candidate.law, law_before, fell), _completed(candidate.fit)
         return replace(candidate.fit, model=gear.replace(friction_input=law, friction_mesh=mesh))
 
 

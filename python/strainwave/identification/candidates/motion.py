@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, friction, loads
+from strainwave import Drive, friction, loads
 from strainwave.identification.candidates.motion_candidate import (
+    GRAVITY,
     MAX_ERROR,
     MotionCandidate,
     candidate_of,
@@ -26,13 +28,13 @@ from strainwave.identification.candidates.motion_model import (
     FOLLOWS,
     INPUT,
     MotionModel,
-    bristled,
+    sizes_of_waves,
     slope_of,
     with_curved_viscous_part,
     with_delay,
-    with_higher_friction_at_low_speed,
+    with_friction_at_low_speed,
     with_loss_under_load,
-    with_lower_friction_at_low_speed,
+    with_ripple,
     without,
 )
 from strainwave.identification.candidates.plain import (
@@ -46,19 +48,15 @@ from strainwave.identification.candidates.plain import (
     one_speed,
     stretches,
 )
-from strainwave.identification.candidates.ripple import sizes_of_waves, with_ripple
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
-from strainwave.identification.experiments.stages import series_compliance
+from strainwave.identification.experiments.torsion_loop import series_compliance
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
-GRAVITY = ("load.gravity_torque", "load.gravity_phase")
 AS_IN_SET = "split as in the start set"
-BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
-NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
 START_FRICTION = 1e-3  # of the size of the regression's: from where a fit can start
@@ -95,25 +93,21 @@ def fit_motion(
     search = _Search(drive, held_out, {**(priors or {}), **of_split})
     best = search.first([replace(simple, log=log.starting([each.start for each in simple.log.nuisances])) for log in logs])
     delay = best_delay(logs[0], drive)
-    late = [search.tried(each) for each in _delayed(best.model, delay)] if delay else []
+    late = with_delay(best.model, delay) if delay else None  # alone, and with each other part, as each may hide the other
+    delayed = [] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
+    with_delays = [each for model in delayed if (each := search.tried(model)) is not None]
     best = _completed(search, best)
-    if found := [each for each in late if each is not None]:
-        start = found[0]  # a delay alone, unless a part beside it explains more
-        for each in found[1:]:
+    if with_delays:
+        start = with_delays[0]  # a delay alone, unless a part beside it explains more
+        for each in with_delays[1:]:
             start = each if each.explains_more_than(start) else start
-        other, beside = _completed(search, start), _completed(search, min(found, key=lambda each: each.error_in_band))
+        other, beside = _completed(search, start), _completed(search, min(with_delays, key=lambda each: each.error_in_band))
         other = beside if beside.explains_more_than(other) else other
         is_stand_in = bool(sizes_of_waves(best.model)) and not best.predicts_as_well_as(other)  # waves for a delay
         best = other if is_stand_in or other.explains_more_than(best) else best
     best = search.no_worse_than_plain(best, replace(simple, log=simple.log.in_full_band()))
     others = sorted((each for each in search.every if each.model is not best.model), key=lambda each: each.error)
     return (best, *others)
-
-
-def _delayed(model: MotionModel, delay: float) -> list[MotionModel | None]:
-    """Return a model with a delay alone, and with a delay and each other part, as each may hide the other."""
-    late = with_delay(model, delay)
-    return [late] if late is None else [late, *(part(late) for part in PARTS if part is not with_delay)]
 
 
 def _completed(search: _Search, best: MotionCandidate) -> MotionCandidate:
@@ -137,8 +131,8 @@ def _waving(waving: MotionCandidate | None, plain: MotionCandidate) -> MotionCan
 
 def _with_parts(search: _Search, best: MotionCandidate) -> MotionCandidate:
     """Return the model without and with parts, those over the angle last."""
-    for less in (_without_gravity, _without_inertia, _without_viscous):
-        best = search.reduced(best, less(best))
+    for part in ("gravity", "inertia", "viscous part"):
+        best = search.reduced(best, _without(best, part))
     best = search.rippled(search.grown(best, list(PARTS)))
     return _with(best, search.tried(_with_own_split(best.model)))  # which a delay hides
 
@@ -170,23 +164,23 @@ class _Search:
         if model is None:
             return None
         try:
-            found = candidate_of(model, self.held_out, self.priors)
+            candidate = candidate_of(model, self.held_out, self.priors)
         except (ValueError, FloatingPointError) as error:
             self.failures.append(str(error))
             return None
-        if not _is_sensible(found):
+        if not _is_sensible(candidate):
             return None
-        found = _with(found, _with_bristles(found))
-        self.every.append(found)
-        return found
+        candidate = _with(candidate, candidate.with_bristles())
+        self.every.append(candidate)
+        return candidate
 
     def first(self, models: Sequence[MotionModel]) -> MotionCandidate:
         """Return the simplest model, in the band in which it shows most."""
-        found = [each for model in models if (each := self.tried(model)) is not None]
-        if not found:
+        candidates = [each for model in models if (each := self.tried(model)) is not None]
+        if not candidates:
             raise ValueError(self.failures[0])
-        best = found[0]
-        for other in found[1:]:
+        best = candidates[0]
+        for other in candidates[1:]:
             best = other if other.is_clearer_than(best) else best
         return best
 
@@ -201,13 +195,13 @@ class _Search:
         """Return the model with those parts that explain more, the one that explains most first."""
         while parts:
             tried = {part: self.tried(part(best.model)) for part in parts}
-            found = {part: each for part, each in tried.items() if each is not None}
-            chosen = min(found, key=lambda part: found[part].error_in_band, default=None)
-            if chosen is None or not found[chosen].explains_more_than(best):
+            candidates = {part: each for part, each in tried.items() if each is not None}
+            chosen = min(candidates, key=lambda part: candidates[part].error_in_band, default=None)
+            if chosen is None or not candidates[chosen].explains_more_than(best):
                 break
-            promising = [part for part, each in found.items() if each.error_in_band < MAX_ERROR * best.error_in_band]
+            promising = [part for part, each in candidates.items() if each.error_in_band < MAX_ERROR * best.error_in_band]
             parts = [part for part in promising if part is not chosen]
-            best = found[chosen]
+            best = candidates[chosen]
         return best
 
     def rippled(self, best: MotionCandidate) -> MotionCandidate:
@@ -221,7 +215,7 @@ class _Search:
         ratios = np.array([float(np.sqrt(np.mean(each**2))) for each in left]) / best.errors
         if min(float(np.median(ratios)), float(ratios[-1])) > MAX_RELATIVE_ERROR:
             return best
-        bristled, limit = _with_bristles(best), MAX_RELATIVE_ERROR * best.errors[-1]
+        bristled, limit = best.with_bristles(), MAX_RELATIVE_ERROR * best.errors[-1]
         if bristled is not None and bristled.error < best.error and bristled.errors[-1] < limit:  # no estimate moves
             return bristled
         self.tried(model)
@@ -261,49 +255,36 @@ def prior_of_viscous(law: Any, speed: float) -> tuple[float, float]:
 # ---- Parts that a record may not show -------------------------------------------------------------------------------------
 
 
-def _is_small(best: MotionCandidate, path: str, unit: Array) -> bool:
-    """True if the model may do without a number that nobody gave: it makes little of the effort, `unit` for one unit of it."""
-    value = next((value for name, value, *_ in _core.parameters(best.model.drive) if name == path), 0.0)
-    scale = per_torque(best.model.drive, best.log.effort)
-    is_free = path in best.model.free and path not in best.priors
-    return is_free and float(np.std(scale * value * unit)) < MAX_SMALL_PART * best.error
+def _without(best: MotionCandidate, part: Literal["gravity", "inertia", "viscous part"]) -> MotionModel | None:
+    """Return the model without a part, if nobody gave its number and the number makes little of the effort.
 
-
-def _without_gravity(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint whose axis is upright."""
-    model, ratio = best.model, best.model.drive.gear.kinematics.ratio
-    if not _is_small(best, "load.gravity_torque", np.sin(best.log.motion.angle / ratio) / ratio):
+    That is gravity of a joint whose axis is upright, inertia of one that hardly accelerates, and the viscous part of one that
+    moves at one speed, where Coulomb's friction stands for all of it.
+    """
+    model, motion, ratio = best.model, best.log.motion, best.model.drive.gear.kinematics.ratio
+    path, torque = {  # of a unit of the number
+        "gravity": ("load.gravity_torque", np.sin(motion.angle / ratio) / ratio),
+        "inertia": ("load.inertia", motion.acceleration / ratio**2),
+        "viscous part": (model.path_of("viscous"), motion.speed),
+    }[part]
+    if path not in model.free or path in best.priors:
         return None
-    load = loads.Inertia(inertia=inertia_of(model.drive))
-    return replace(
-        model, name=f"{model.name}, no gravity", drive=model.drive.replace(load=load), free=without(model.free, "gravity")
-    )
-
-
-def _without_inertia(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint that hardly accelerates."""
-    model = best.model
-    if not _is_small(best, "load.inertia", best.log.motion.acceleration / model.drive.gear.kinematics.ratio**2):
+    scale = per_torque(model.drive, best.log.effort) * best.values[model.free.index(path)]
+    if not float(np.std(scale * torque)) < MAX_SMALL_PART * best.error:
         return None
-    drive = model.drive.replace({"load.inertia": MIN_INERTIA})
-    return replace(model, name=f"{model.name}, no inertia", drive=drive, free=without(model.free, "inertia"))
-
-
-def _without_viscous(best: MotionCandidate) -> MotionModel | None:
-    """Return the model of a joint that moves at one speed, where Coulomb's friction stands for all of it."""
-    model = best.model
-    if not _is_small(best, model.path_of("viscous"), best.log.motion.speed):
-        return None
-    drive = model.drive.replace({model.path_of("viscous"): 0.0})
-    return replace(model, name=f"{model.name}, no viscous part", drive=drive, free=without(model.free, "viscous"))
+    if part == "gravity":
+        drive = model.drive.replace(load=loads.Inertia(inertia=inertia_of(model.drive)))
+    else:
+        drive = model.drive.replace({path: MIN_INERTIA if part == "inertia" else 0.0})
+    return replace(model, name=f"{model.name}, no {part}", drive=drive, free=without(model.free, part.split()[0]))
 
 
 # ---- Parts that may be added -------------------------------------------------------------------------------------------
 
 Part = Callable[[MotionModel], MotionModel | None]
 PARTS: tuple[Part, ...] = (
-    with_delay, with_curved_viscous_part, with_higher_friction_at_low_speed, with_lower_friction_at_low_speed,
-    with_loss_under_load,
+    with_delay, with_curved_viscous_part, partial(with_friction_at_low_speed, share=1.3),
+    partial(with_friction_at_low_speed, share=0.7), with_loss_under_load,
 )  # fmt: skip
 
 
@@ -326,20 +307,6 @@ def _with(candidate: MotionCandidate, more: MotionCandidate | None) -> MotionCan
     return more if more is not None and more.is_better_than(candidate) else candidate
 
 
-def _with_bristles(best: MotionCandidate) -> MotionCandidate | None:
-    """Return the same with bristles, of the bend that explains most; None if its law of friction has none."""
-    drive, last = best.model.drive, best.folds[-1]
-    if bristled(drive, BENDS[0]) is drive or bristled(last.drive, BENDS[0]) is last.drive:
-        return None
-    rows = moving(best.log) & ~last.stretch  # the last stretch takes no part
-
-    def error(bend: float) -> float:
-        return float(np.mean(best.log.residual(bristled(last.drive, bend), last.nuisances)[rows] ** 2))
-
-    coarse = min(BENDS.tolist(), key=error)
-    return replace(best, bend=min((coarse * NEAR_BENDS).tolist(), key=error)).predicted_anew()
-
-
 # ---- Fit -----------------------------------------------------------------------------------------------------------------
 
 
@@ -349,16 +316,15 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
     coulomb = max(plain.coulomb, least)
     law = friction.Coulomb(coulomb=coulomb, breakaway=coulomb, viscous=max(plain.viscous, 0.0))
     drive = drive.replace(gear=drive.gear.replace(friction_input=law, friction_mesh=FRICTIONLESS))
-    total = max(plain.inertia, 1e-9)
+    total, carried = max(plain.inertia, 1e-9), inertia_of(drive)
     if inertia == "load.inertia":
         rotor = drive.motor.inertia + drive.gear.input_inertia
         carried = max(total - rotor, MIN_INERTIA_SHARE * total) * ratio**2
-        load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
-        return drive.replace(load=load), [inertia, *GRAVITY]
-    rest = total - drive.gear.input_inertia - inertia_of(drive) / ratio**2
-    moved = drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total))
-    load = loads.Pendulum(inertia=inertia_of(drive), gravity_torque=plain.gravity, gravity_phase=plain.phase)
-    return drive.replace(motor=moved, load=load), [inertia, *GRAVITY]
+    else:
+        rest = total - drive.gear.input_inertia - carried / ratio**2
+        drive = drive.replace(motor=drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total)))
+    load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
+    return drive.replace(load=load), [inertia, *GRAVITY]
 
 
 def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:

@@ -1,23 +1,51 @@
-"""A model of a joint along its motion, and the parts of friction that may be added to it."""
+"""A model of a joint along its motion, the parts of friction that may be added to it, and its waves over the angle.
+
+Waves are a detent, the same in both directions, and dry friction that varies over the turn. Both are linear in the sine and
+cosine of their orders: least squares chooses them among other terms in the full band. They are numbers of the gear, as
+`friction.Cyclic` around its friction at the input. A fit in the pass band has the estimates by the full band as priors:
+of many waves the pass band contains little.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave import Drive, _core, friction
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.steady_shapes import QUADRANTS
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque, turnover_speed
+from strainwave.identification.fitting.fit import problem_of
+from strainwave.identification.fitting.unknowns import plan
+from strainwave.statistics.linear_fit import linear_fit, solved
+from strainwave.statistics.residuals import autoregression, chance_of_gain, correlation_length, whitened
 
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
 WITHIN = f"{INPUT}law."  # where friction stands that varies over the angle
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
+BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
+NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
 FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
+Array = NDArray[np.float64]
+Rows = NDArray[np.bool_]
+
+INPUT_ORDERS = (1.0, 2.0, 3.0, 4.0)  # of the input's turn
+OUTPUT_ORDERS = (1.0, 2.0)  # of the output's turn
+MIN_INPUT_TURNS = 2.0  # of a record that separates a wave over the input's turn from what varies over the output's
+MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
+MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
+MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
+BIAS_IN_FULL_BAND = 0.05  # of a wave: what numbers by the pass band and a smoothed angle make of it (assumed)
+MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
+NUMBERS = {  # of `friction.Cyclic`
+    "friction": ("order", "amplitude", "phase"),
+    "detent": ("detent_order", "detent_torque", "detent_phase"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,18 +154,8 @@ def with_curved_viscous_part(model: MotionModel) -> MotionModel | None:
     )
 
 
-def with_higher_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """Return the model with friction that falls with the speed at first; the fit may make it rise."""
-    return _with_another_friction_at_low_speed(model, 1.3)
-
-
-def with_lower_friction_at_low_speed(model: MotionModel) -> MotionModel | None:
-    """Return the model with friction that rises with the speed at first; the fit may make it fall."""
-    return _with_another_friction_at_low_speed(model, 0.7)
-
-
-def _with_another_friction_at_low_speed(model: MotionModel, share: float) -> MotionModel | None:
-    """Return the model with a Stribeck torque whose fit starts with a share of Coulomb's torque at rest [1]."""
+def with_friction_at_low_speed(model: MotionModel, share: float) -> MotionModel | None:
+    """Return the model with a Stribeck torque that starts with a share of Coulomb's torque at rest [1]; a fit may turn it."""
     law = model.law
     if not isinstance(law, friction.Coulomb) or model.one_speed:
         return None
@@ -176,3 +194,189 @@ def bristled(drive: Drive, bend: float) -> Drive:
         bristle_stiffness=law.coulomb / bend, bristle_damping=0.0, viscous=max(law.viscous, 0.0),
     )  # fmt: skip
     return with_sliding(drive, bristle)
+
+
+def best_bend(log: MotionLog, drive: Drive, nuisances: Array, rows: Rows) -> float | None:
+    """Return the bend of bristles that explains most of some samples [rad]; None if the law of friction has no bristles."""
+    if bristled(drive, BENDS[0]) is drive:
+        return None
+
+    def error(bend: float) -> float:
+        return float(np.mean(log.residual(bristled(drive, bend), nuisances)[rows] ** 2))
+
+    coarse = min(BENDS.tolist(), key=error)
+    return float(min((coarse * NEAR_BENDS).tolist(), key=error))
+
+
+# ---- Waves over the angle --------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, order=True)
+class Wave:
+    """A torque over the angle of the input.
+
+    Attributes:
+        kind: "detent", the same in both directions of motion, or "friction", against the motion
+        order: periods per turn of the input
+    """
+
+    kind: Literal["detent", "friction"]
+    order: float
+
+    def columns(self, angle: Array, sense: Array) -> Array:
+        """Return its sine and cosine over the angle, of a sense of motion from -1 to 1 [1], shape (2, m)."""
+        phase, factor = self.order * angle, sense if self.kind == "friction" else 1.0
+        return np.stack([factor * np.sin(phase), factor * np.cos(phase)])
+
+
+def with_ripple(model: MotionModel) -> MotionModel | None:
+    """Return the model with the waves over the angle that its residual contains beyond chance; None if there are no more.
+
+    Waves are added one by one, each time the one that explains most of the rest. A wave that other terms make up is not
+    separable and takes no part.
+    """
+    whole = replace(model, log=model.log.sliding_in_full_band())
+    _, base, left = _linear(whole)
+    waves = _beyond_chance(base, left, _efforts(whole))
+    largest = max(map(abs, (*waves.values(), *sizes_of_waves(model).values())), default=0.0)
+    waves = {wave: waves[wave] for wave in sorted(waves) if abs(waves[wave]) > MIN_SIZE * largest}
+    return _in_gear(model, waves) if waves else None
+
+
+def by_full_band(model: MotionModel, trainings: Sequence[Rows]) -> list[dict[str, tuple[float, float]]]:
+    """Return value and standard deviation of the numbers that the full band alone determines, by path, for each training.
+
+    They follow by one step of Gauss and Newton from the numbers of the model.
+
+    Args:
+        model: with its waves in the gear
+        trainings: samples of the grid that take part, shape (m,) each
+    """
+    if not model.of_full_band:
+        return [{} for _ in trainings]
+    whole = replace(model, log=model.log.sliding_in_full_band())
+    paths, slopes, left = _linear(whole)
+    white = _whitened(slopes, left)
+    numbers = {path: value for path, value, *_ in _core.parameters(model.drive)}
+    determined = []
+    for rows in (training[whole.log.motion.rows] for training in trainings):
+        step = linear_fit(white[rows, :-1], white[rows, -1])
+        determined.append({
+            path: (
+                numbers[path] + change,
+                float(np.hypot(sigma, BIAS_IN_FULL_BAND * (1.0 if "phase" in path else numbers[path]))),
+            )
+            for path, change, sigma in zip(paths, step.values.tolist(), step.sigma.tolist(), strict=False)
+            if path in model.of_full_band and np.isfinite(sigma)
+        })  # fmt: skip
+    return determined
+
+
+def is_one_wave(log: MotionLog) -> bool:
+    """True if a log moves so little in one of both directions that a detent makes up friction over the angle of its order."""
+    return bool(2.0 * np.sqrt(log.share_of_rarer_way * (1.0 - log.share_of_rarer_way)) < MIN_OWN_SHARE)
+
+
+def sizes_of_waves(model: MotionModel) -> dict[Wave, float]:
+    """Return the amplitude of each wave in the gear of a model [N.m]."""
+    law: Any = model.drive.gear.friction_input
+    if not isinstance(law, friction.Cyclic):
+        return {}
+    detents = {Wave("detent", order): size for order, size in zip(law.detent_order, law.detent_torque, strict=True)}
+    level = model.law.coulomb
+    return detents | {Wave("friction", order): level * size for order, size in zip(law.order, law.amplitude, strict=True)}
+
+
+def _efforts(model: MotionModel) -> dict[Wave, Array]:
+    """Return the effort of sine and cosine of further waves of 1 N.m at the samples compared, shape (n, 2) each.
+
+    The record contains their turn often enough. Of a detent over the output's turn, gravity is the first.
+    """
+    log, ratio, known = model.log, abs(model.drive.gear.kinematics.ratio), sizes_of_waves(model)
+    motion, delay, scale = log.motion, log.delay, per_torque(model.drive, log.effort)
+    sense = np.tanh(motion.speed / turnover_speed(motion.speed))
+    moved = np.ptp(motion.angle[motion.rows]) / (2.0 * np.pi)
+    orders = [order for order in INPUT_ORDERS if moved >= MIN_INPUT_TURNS]
+    orders += [order / ratio for order in OUTPUT_ORDERS if moved >= MIN_OUTPUT_TURNS * ratio]
+    varies = not is_one_wave(log) and model.law.coulomb > 0.0
+    efforts = {}
+    for wave in (Wave(kind, order) for order in orders for kind in (("detent", "friction") if varies else ("detent",))):
+        if wave not in known:
+            series = scale * wave.columns(motion.angle, sense)
+            series = late(series, delay, motion.step)[0] if log.delayed else series
+            efforts[wave] = series[:, motion.rows].T
+    return efforts
+
+
+def _linear(model: MotionModel) -> tuple[list[str], Array, Array]:
+    """Return the derivatives of the effort by the free numbers and nuisances, shape (n, unknowns), and its residual, (n,).
+
+    The paths of the free numbers are the first, in the order of the derivatives.
+    """
+    problem = problem_of(plan(model.drive, [""], model.free, ties=model.ties), model.drive, [model.log], [None])
+    ((predicted, slopes),) = problem.predict(problem.start())
+    return [each.path for each in problem.plan.unknowns], slopes[:, 0].T, (model.log.measured - predicted)[0]
+
+
+def _whitened(columns: Array, left: Array) -> Array:
+    """Return columns and a residual, made white by the autoregression of what no column explains, shape (n, columns + 1).
+
+    Slow errors of a model then hide no fast wave.
+    """
+    noise = autoregression(left - columns @ solved(columns, left))
+    return whitened(np.column_stack([columns, left]), noise)
+
+
+def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> dict[Wave, complex]:
+    """Return the waves beside the columns of a model that a residual contains beyond chance, with their sine and cosine.
+
+    The one that explains most is the first.
+    """
+    if not pairs:
+        return {}
+    series = _whitened(np.column_stack([base, *pairs.values()]), left)
+    columns, between, target = np.split(series, [base.shape[1], -1], axis=1)
+    white = dict(zip(pairs, np.split(between, len(pairs), axis=1), strict=True))
+    rest, chosen = (target - columns @ solved(columns, target))[:, 0], list[Wave]()
+    while True:
+        left_by = dict[Wave, Array]()
+        for wave in (each for each in pairs if each not in chosen):
+            own, size = white[wave] - columns @ solved(columns, white[wave]), np.linalg.norm(white[wave], axis=0)
+            directions, shares, _ = np.linalg.svd(own / np.maximum(size, 1e-300), full_matrices=False)
+            if shares[-1] > MIN_OWN_SHARE:
+                left_by[wave] = rest - directions @ (directions.T @ rest)
+        best = min(left_by, key=lambda wave: float(left_by[wave] @ left_by[wave]), default=None)
+        if best is None:
+            break
+        freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(left_by[best])
+        gain = chance_of_gain(float(rest @ rest), float(left_by[best] @ left_by[best]), 2, freedom)
+        if len(pairs) * gain > MAX_CHANCE:
+            break
+        chosen.append(best)
+        columns, rest = np.column_stack([columns, white[best]]), left_by[best]
+    sizes = solved(columns, target[:, 0])[base.shape[1] :].reshape(-1, 2)
+    return {wave: complex(*size) for wave, size in zip(chosen, sizes.tolist(), strict=True)}
+
+
+def _in_gear(model: MotionModel, sizes: Mapping[Wave, complex]) -> MotionModel:
+    """Return the model with further waves in its gear, whose numbers are free.
+
+    Args:
+        model: before
+        sizes: of sine and, imaginary, of cosine [N.m]
+    """
+    model = model.varying_over_the_angle()
+    law: Any = model.drive.gear.friction_input
+    free, of_full_band = list(model.free), list(model.of_full_band)
+    for wave, size in sizes.items():
+        order, amplitude, phase = NUMBERS[wave.kind]
+        unit = model.law.coulomb if wave.kind == "friction" else 1.0
+        more = {order: wave.order, amplitude: abs(size) / unit, phase: float(np.angle(size))}
+        paths = [f"{INPUT}{name}[{len(getattr(law, name))}]" for name in (amplitude, phase)]
+        law = law.replace(**{name: [*getattr(law, name), value] for name, value in more.items()})
+        free += paths
+        of_full_band += paths
+    names = {"detent": "a detent", "friction": "friction over the angle"}
+    added = " and ".join(names[kind] for kind in names if any(wave.kind == kind for wave in sizes))
+    drive = model.drive.replace(gear=model.drive.gear.replace(friction_input=law))
+    return replace(model, name=f"{model.name}, {added}", drive=drive, free=tuple(free), of_full_band=tuple(of_full_band))

@@ -1,4 +1,10 @@
-"""Plain least squares on a log: the simplest model of a joint, from which fits start and which no answer may be worse than."""
+"""Plain least squares on a log: the simplest model of a joint, from which fits start and which no answer may be worse than.
+
+It also determines the place at which the torque was measured, which decides which inertias and which friction the torque
+contains. A torque of the motor accelerates the motor's rotor and the wave generator; one behind the motor the wave generator
+alone; one behind the gear neither, and it contains no friction of the gear. The inertias of the start set are guesses. If all
+that turns has less than they have, the torque was measured behind them, or they are smaller.
+"""
 
 from __future__ import annotations
 
@@ -12,9 +18,11 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import END_SAMPLES
-from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MotionLog, per_torque, turnover_speed
+from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MIN_INERTIA, MotionLog, per_torque, turnover_speed
 from strainwave.statistics.linear_fit import linear_fit, own_share, solved
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
@@ -27,6 +35,11 @@ MIN_SLIDING_SPEED = 0.1  # of a fast speed: slower samples show how friction beg
 MIN_OWN_SHARE_OF_SPEED = 0.1  # of the speed: if less differs from its sign, the record has one speed
 MAX_ROWS_OF_SIGMA = 4000  # samples from which the standard deviation of an inertia is computed
 BLOCKS_PER_STRETCH = 10  # over which the residual scatters
+ROTOR_MARGIN = 1.2  # times the inertia of the rotor: a joint torque with less of it was measured behind the rotor
+MIN_FRICTION_SHARE = 1e-3  # of the friction of the start set: a joint torque with less was measured behind the gear
+MIN_FRICTION_OF_INPUT = 0.1  # of the friction of the start set: with less, a joint torque may lack the rotor (assumed)
+NO_ROTOR = 10.0 * MIN_INERTIA  # kg.m2: a drive must have some, and MIN_INERTIA stands for a rotor that is not known
+SHARE_OF_ROTOR = 0.5  # of all that turns, if the start set's rotor has more than that
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,14 +108,6 @@ def fit_plain(log: MotionLog, drive: Drive) -> Plain:
     )  # fmt: skip
 
 
-def inertia_with_sigma(log: MotionLog, drive: Drive) -> tuple[float, float]:
-    """Return the inertia of all that turns at the input by plain least squares, and its standard deviation [kg.m2]."""
-    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    every = max(int(rows.sum()) // MAX_ROWS_OF_SIGMA, 1)
-    found = linear_fit(columns[rows][::every], torque[rows][::every])
-    return float(found.values[0]), float(found.sigma[0])
-
-
 def one_speed(log: MotionLog) -> float:
     """Return the size of the speed of the input if a log has one only, so that friction has no shape over it; else 0 [rad/s].
 
@@ -128,10 +133,10 @@ def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     rivals = [time, time**2, speed * np.abs(speed), sign * np.sqrt(np.abs(speed)), sign * time]
     series = motion.filtered(np.stack([_torque(log, drive), *own, *rivals]))
     target, columns, others = series[0], series[1 : 1 + len(own)].T, series[1 + len(own) :].T
-    found = linear_fit(columns, target, rivals=others)
-    amplitudes: Array = found.values[:2]
+    regression = linear_fit(columns, target, rivals=others)
+    amplitudes: Array = regression.values[:2]
     share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
-    variance = float(share @ found.covariance[:2, :2] @ share)
+    variance = float(share @ regression.covariance[:2, :2] @ share)
     return float(np.sqrt(variance)) if variance >= 0.0 else np.inf  # nan of an infinite variance, too
 
 
@@ -173,11 +178,11 @@ def stretches(log: MotionLog) -> list[Rows]:
 def held_out_residuals(log: MotionLog, drive: Drive, blocks: Sequence[Rows]) -> list[Array]:
     """Return what plain least squares leaves of the effort in each block by the rest of the motion, each of shape (block,)."""
     columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
-    scale, found = abs(per_torque(drive, log.effort)), []
+    scale, residuals = abs(per_torque(drive, log.effort)), []
     for block in blocks:
         weights = solved(columns[rows & ~block], torque[rows & ~block])
-        found.append(scale * (torque - columns @ weights)[block])
-    return found
+        residuals.append(scale * (torque - columns @ weights)[block])
+    return residuals
 
 
 def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
@@ -212,3 +217,86 @@ def _torque(log: MotionLog, drive: Drive) -> Array:
     """The torque of the motor at the input without what is known of it, on the grid [N.m]."""
     torque = (log.recorded - log.induced(drive)) / per_torque(drive, log.effort)
     return np.asarray(torque - log.extra / drive.gear.kinematics.ratio)
+
+
+# ---- Place of the torque ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class TorquePlace:
+    """The part of a drive that a torque accelerates.
+
+    Attributes:
+        drive: with the inertias that the torque contains
+        open_inertia: inertia at the input that the torque may contain or not [kg.m2]; 0 if the record decides
+        has_friction: False if the torque contains no friction of the gear
+        remark: what was decided and why; empty if the torque is that of the motor, as is assumed
+    """
+
+    drive: Drive
+    open_inertia: float = 0.0
+    has_friction: bool = True
+    remark: str = ""
+
+
+def torque_place(log: MotionLog, drive: Drive, motor_given: bool = False) -> TorquePlace:
+    """Return the place at which the torque of a log was measured, by the sizes of its inertia and friction.
+
+    Args:
+        log: of the torque
+        drive: with the inertias of motor and gear, and the friction of the gear, as guessed before
+        motor_given: True if a person knows the motor's inertia, so that the torque is that of the motor; that of the gear is
+            a guess all the same
+    """
+    ratio, motor, gear = drive.gear.kinematics.ratio, drive.motor.inertia, drive.gear.input_inertia
+    columns, torque, rows = _columns(log, drive), _torque(log, drive), moving(log)
+    every = max(int(rows.sum()) // MAX_ROWS_OF_SIGMA, 1)
+    by_regression = linear_fit(columns[rows][::every], torque[rows][::every])
+    inertia, sigma = float(by_regression.values[0]), float(by_regression.sigma[0])
+    rotor, total = motor + gear, max(inertia + SIGNIFICANCE_SIGMA * sigma, 0.0)  # no more than that turns
+    sizes = f"all that turns has {inertia * ratio**2:.3g} kg·m² at the output, the rotor {rotor * ratio**2:.3g} kg·m²"
+    if motor_given:
+        rest = max(inertia - motor, 0.0)
+        if total >= rotor or total < motor:
+            return TorquePlace(drive)
+        return TorquePlace(
+            _with_rotor(drive, motor, SHARE_OF_ROTOR * rest), total - motor,
+            remark=f"{sizes}: that of the start set's wave generator is too large; the load's is not separable from it",
+        )  # fmt: skip
+    if log.effort == "joint_torque":
+        plain, speed = fit_plain(log, drive), float(np.median(np.abs(log.motion.speed[moving(log)])))
+        before = float(drive.gear.friction_input.steady(speed))
+        share = max(plain.coulomb + plain.viscous * speed, 0.0) / before if before > 0.0 else 1.0
+        if share < MIN_FRICTION_SHARE or total < ROTOR_MARGIN * rotor:
+            why = "it contains no friction of the gear" if share < MIN_FRICTION_SHARE else sizes
+            behind = _with_rotor(drive, NO_ROTOR, 0.0)
+            return TorquePlace(
+                behind if share >= MIN_FRICTION_SHARE else frictionless(behind),
+                0.0 if total < rotor else rotor, share >= MIN_FRICTION_SHARE,
+                f"{log.effort} was measured behind the rotor: {why}; the load's inertia is all that it contains",
+            )  # fmt: skip
+        return TorquePlace(drive, rotor if share < MIN_FRICTION_OF_INPUT else 0.0)
+    if log.effort == "input_torque" and gear < total < rotor:
+        return TorquePlace(
+            _with_rotor(drive, NO_ROTOR, gear), motor, remark=f"{log.effort} was measured behind the motor's rotor: {sizes}"
+        )
+    if total >= rotor:
+        return TorquePlace(drive)
+    less = SHARE_OF_ROTOR * total / rotor
+    return TorquePlace(
+        _with_rotor(drive, less * motor, less * gear), total,
+        remark=f"{sizes}: that of the start set is too large, or the torque was measured behind it; the inertia of the load is "
+        "not separable from it",
+    )  # fmt: skip
+
+
+def _with_rotor(drive: Drive, motor: float, gear: float) -> Drive:
+    """Return the drive with other inertias of motor and wave generator [kg.m2]."""
+    return drive.replace(
+        motor=drive.motor.replace(inertia=max(motor, MIN_INERTIA)), gear=drive.gear.replace(input_inertia=gear)
+    )
+
+
+def frictionless(drive: Drive) -> Drive:
+    """Return the drive without friction at input and mesh, which a torque behind the gear does not contain."""
+    return drive.replace(gear=drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS))

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.identification.experiments.friction_table import FrictionTable, varies
-from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.order_waves import amplitudes_of, order_waves
+from strainwave.statistics.linear_fit import amplitudes_of, order_waves, solved
 from strainwave.statistics.residuals import chance_of_gain
 
 Array = NDArray[np.float64]
@@ -100,12 +99,12 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
         np.stack([np.ones_like(speed), (speed / fastest) ** p, *([np.exp(-((speed / v_s) ** 2))] if falls else [])], axis=1)
         for v_s, p in grid
     ]
-    found = np.array([solved(columns, torque) for columns in shapes])
-    left = np.array([np.sum((columns @ each - torque) ** 2) for columns, each in zip(shapes, found, strict=True)])
-    possible = np.all(found >= 0.0, axis=1)
+    coefficients = np.array([solved(columns, torque) for columns in shapes])
+    left = np.array([np.sum((columns @ each - torque) ** 2) for columns, each in zip(shapes, coefficients, strict=True)])
+    possible = np.all(coefficients >= 0.0, axis=1)
     best = int(np.argmin(np.where(possible, left, np.inf) if possible.any() else left))
     least = 1e-3 * float(np.abs(torque).max())
-    coulomb, viscous, *excess = np.maximum(found[best], 0.0).tolist()
+    coulomb, viscous, *excess = np.maximum(coefficients[best], 0.0).tolist()
     coulomb = max(coulomb, least)
     v_s, p = map(float, grid[best])
     higher = coulomb + max(excess[0], 0.1 * coulomb) if falls else 0.0  # which counts as coulomb
@@ -221,8 +220,8 @@ def _lubricated(shape: Shape, table: FrictionTable, name: str, **changed: float)
     else:
         return
     mixed = friction.MixedLubrication(coulomb=law.coulomb, viscous=law.viscous, **(fall | changed))
-    (found, *_), inner = changed, "" if outer is None else "law."
-    law, free = mixed if outer is None else outer.replace(law=mixed), (*shape.free, inner + found)
+    (free_number, *_), inner = changed, "" if outer is None else "law."
+    law, free = mixed if outer is None else outer.replace(law=mixed), (*shape.free, inner + free_number)
     yield replace(shape, name=f"{shape.name}, {name}", law=law, free=free)
 
 
@@ -237,12 +236,12 @@ def _map(table: FrictionTable, angle: Array) -> Iterator[Shape]:
         return
     cell = np.rint(angle / (2.0 * np.pi) * angles).astype(int) % angles
     means = [float(level[group == k].mean()) for k in range(len(speeds))]
-    found = [
+    levels = [
         max(float(level[here].mean()) if np.any(here := (group == k) & (cell == j)) else means[k], 0.0)
         for k in range(len(speeds))
         for j in range(angles)
     ]
-    yield Shape("map over angle and speed", friction.AngleSpeedMap(speed=speeds, level=found), ("level",))
+    yield Shape("map over angle and speed", friction.AngleSpeedMap(speed=speeds, level=levels), ("level",))
 
 
 def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, float, float]]:
@@ -258,15 +257,15 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
     waves, left = np.zeros(0), float(np.sum(residual**2))
     while len(orders) < MAX_WAVES:
         tried = {n: _explained(residual, [pairs[each] for each in (*orders, n)]) for n in pairs if n not in orders}
-        order, (found, still) = min(tried.items(), key=lambda item: item[1][1])
-        if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(found)) > MAX_CHANCE:
+        order, (coefficients, still) = min(tried.items(), key=lambda item: item[1][1])
+        if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(coefficients)) > MAX_CHANCE:
             break
-        orders, waves, left = [*orders, order], found, still
+        orders, waves, left = [*orders, order], coefficients, still
     return sorted(zip(map(float, orders), *(each.tolist() for each in amplitudes_of(waves)), strict=True))
 
 
 def _explained(residual: Array, pairs: list[Array]) -> tuple[Array, float]:
     """Return the factors of the columns of all pairs, and the sum of squares left."""
     columns = np.hstack(pairs)
-    found = solved(columns, residual)
-    return found, float(np.sum((residual - columns @ found) ** 2))
+    coefficients = solved(columns, residual)
+    return coefficients, float(np.sum((residual - columns @ coefficients) ** 2))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from operator import attrgetter
 from typing import NamedTuple
@@ -12,7 +11,6 @@ import numpy as np
 
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.fitting.influence import uncertainty
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import (
     MAX_DISTANCE,
     CombinedParameter,
@@ -20,50 +18,29 @@ from strainwave.identification.results.combined_parameter import (
     distance,
     is_friction,
 )
-from strainwave.identification.results.determined import PATH as STEADY
-from strainwave.identification.results.file_result import FileEstimate, FileResult
-from strainwave.identification.results.friction_of_file import friction_of, has_loss, mean_load, measured_speeds
+from strainwave.identification.results.file_result import (
+    COULOMB_PATH,
+    GRAVITY_PATH,
+    LOAD_INERTIA,
+    Check,
+    FileEstimate,
+    FileResult,
+)
+from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
 from strainwave.typeset import percent
 
 AGREEMENT = "agreement of files"  # name of the check of two files
 SCALE = "torques of two files"  # likewise, of all their torques together
-COULOMB = "gear.friction_input.coulomb"
-GRAVITY = "load.gravity_torque"
-OF_LOAD = ("load.inertia", GRAVITY)
-MAX_CHANCE = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
+LOAD_PATHS = (LOAD_INERTIA, GRAVITY_PATH)
+MAX_CHANCE_OF_START_SET = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
 SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a file, and how many speeds between them are compared
-MAX_LISTED = 4  # parameters named with a comparison, those furthest apart first
+MAX_PARAMETERS_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
 REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
-
-
-@dataclass(frozen=True)
-class _ComparedWithStart:
-    """A parameter and its value in the start set.
-
-    Attributes:
-        estimate: by the files
-        source: file that determines it best
-        before: value in the start set
-        spread: its relative standard deviation there [1]
-        off: logarithm of the estimate over the value before
-        sigma: standard deviation of that logarithm
-    """
-
-    estimate: FileEstimate
-    source: str
-    before: float
-    spread: float
-    off: float
-    sigma: float
-
-    def __str__(self) -> str:
-        value = f"{self.estimate.path} = {self.estimate.value:.4g} ± {self.estimate.sigma:.2g} {self.estimate.unit}"
-        return f"{value} against {self.before:.4g} ± {100.0 * self.spread:.2g} % ({self.off / self.sigma:+.1f} σ)"
 
 
 def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], failed: Collection[str] = ()) -> Iterator[Check]:
@@ -74,16 +51,17 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
     """
     from scipy.special import chdtri
 
-    compared = list(_compared(start, [each for each in parameters if each.source not in failed]))
+    compared = list(_off_start(start, [each for each in parameters if each.source not in failed]))
     if not compared:
         return
-    squares = sum((each.off / each.sigma) ** 2 for each in compared)
-    limit = float(chdtri(len(compared), MAX_CHANCE))
-    apart = sorted(compared, key=lambda each: -abs(each.off / each.sigma))
-    more = f", and {len(apart) - MAX_LISTED} more" if len(apart) > MAX_LISTED else ""
+    squares = sum(sigmas**2 for _, sigmas, _ in compared)
+    limit = float(chdtri(len(compared), MAX_CHANCE_OF_START_SET))
+    apart = sorted(compared, key=lambda each: -abs(each[1]))
+    words = [words for *_, words in apart[:MAX_PARAMETERS_LISTED]]
+    more = f", and {len(apart) - MAX_PARAMETERS_LISTED} more" if len(apart) > MAX_PARAMETERS_LISTED else ""
     yield Check(
-        "numbers of the start set", listed(dict.fromkeys(each.source for each in apart)), squares, limit, "1", squares > limit,
-        f"the files contradict the set {start.name}: {'; '.join(map(str, apart[:MAX_LISTED]))}{more}",
+        "numbers of the start set", listed(dict.fromkeys(source for source, *_ in apart)), squares, limit, "1", squares > limit,
+        f"the files contradict the set {start.name}: {'; '.join(words)}{more}",
         "start from the set of this gear (size and ratio), or see whether units, sides, ratio and torque constant are right",
     )  # fmt: skip
 
@@ -96,7 +74,7 @@ def gravity_in_ratings(
     if allowed == 0.0:
         return
     for each in parameters:
-        if each.estimate.path == GRAVITY and each.estimate.unit == "N.m" and each.source not in failed:
+        if each.estimate.path == GRAVITY_PATH and each.estimate.unit == "N.m" and each.source not in failed:
             share = each.estimate.value / allowed
             yield Check(
                 "gravity within the ratings", each.source, share, MAX_GRAVITY_OF_RATING, "1", share > MAX_GRAVITY_OF_RATING,
@@ -107,14 +85,14 @@ def gravity_in_ratings(
             )  # fmt: skip
 
 
-def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[_ComparedWithStart]:
+def _off_start(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterator[tuple[str, float, str]]:
+    """Yield the best file of each compared parameter, its distance from the start set in standard deviations, and words."""
     compared = set[str]()
     for each in parameters:
         estimate = each.estimate
-        found = _in_set(start, estimate)
-        if found is None or found[0] in compared:
+        path, before = _in_set(start, estimate)
+        if path in compared:
             continue
-        path, before = found
         entry = start.sources.get(path)
         if entry is None or entry.assumed or before <= 0.0 or estimate.value <= 0.0:
             continue
@@ -122,11 +100,13 @@ def _compared(start: GearSet, parameters: Sequence[CombinedParameter]) -> Iterat
         spread = uncertainty(before, entry) / before
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
-        yield _ComparedWithStart(estimate, each.source, before, spread, float(np.log(estimate.value / before)), sigma)
+        off = float(np.log(estimate.value / before)) / sigma
+        value = f"{estimate.path} = {estimate.value:.4g} ± {estimate.sigma:.2g} {estimate.unit}"
+        yield each.source, off, f"{value} against {before:.4g} ± {100.0 * spread:.2g} % ({off:+.1f} σ)"
 
 
-def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
-    """Return the number of the start set that an estimate is compared with; None if it has none of the same meaning.
+def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float]:
+    """Return the number of the start set that an estimate is compared with; no path if it has none of the same meaning.
 
     Of springs the stiffness at zero twist is compared, and that of further segments with a spring of the same law. Where their
     knees lie depends on how far they were twisted.
@@ -134,14 +114,14 @@ def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float] | None:
     path, spring = estimate.path, start.gear.stiffness
     if path in FIRST_STIFFNESS and estimate.label == path:
         first, stiffness = spring.fields[0]["name"], float(spring.tangent(0.0))
-        return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else None
+        return (f"gear.stiffness.{first}", stiffness) if stiffness == float(getattr(spring, first)) else ("", 0.0)
     further = estimate.law == spring.name and estimate.unit == "N.m/rad" and path.startswith("gear.stiffness.")
     if not (further or path.startswith("gear.friction_input.")) or "[" in path or estimate.label != path:
-        return None
+        return "", 0.0
     try:
         return path, float(attrgetter(path)(start))
     except AttributeError:
-        return None
+        return "", 0.0
 
 
 def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileResult]) -> Iterator[Check]:
@@ -163,10 +143,10 @@ def between_files(parameters: Sequence[CombinedParameter], files: Sequence[FileR
             apart.setdefault(pair, []).append(_contradiction(*(each.of_file(file) for file in pair)))
     for (one, other), found in apart.items():
         found.sort(key=lambda each: -each.apart)
-        more = f", and {len(found) - MAX_LISTED} more" if len(found) > MAX_LISTED else ""
+        more = f", and {len(found) - MAX_PARAMETERS_LISTED} more" if len(found) > MAX_PARAMETERS_LISTED else ""
         yield Check(
             AGREEMENT, f"{one}, {other}", found[0].apart, MAX_DISTANCE, "1", found[0].apart > MAX_DISTANCE,
-            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_LISTED])}{more}"
+            f"their estimates differ: {'; '.join(each.words for each in found[:MAX_PARAMETERS_LISTED])}{more}"
             f"{_taken(found[0], parameters, one, other)}",
             "see whether both files are of one joint, and whether sides, columns, units and the ratio are right for both; "
             "compare temperature, load, speed and lubricant; leave out a file of another gear",
@@ -180,8 +160,8 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
     """
     logs = [each for each in files if not each.failed and not each.same_as and not each.refused]
     for one, other in combinations(logs, 2):
-        pairs = [_log_ratio(mine, its) for mine, its in _same_numbers(one, other)]
-        if not any(path in OF_LOAD for path, *_ in pairs) or all(path in OF_LOAD for path, *_ in pairs):
+        pairs = list(_log_ratios(one, other))
+        if not any(path in LOAD_PATHS for path, *_ in pairs) or all(path in LOAD_PATHS for path, *_ in pairs):
             continue
         off, sigma = (np.array([each[place] for each in pairs]) for place in (1, 2))
         weight = sigma**-2 / np.sum(sigma**-2)
@@ -197,20 +177,15 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
             )  # fmt: skip
 
 
-def _same_numbers(one: FileResult, other: FileResult) -> Iterator[tuple[FileEstimate, FileEstimate]]:
-    """Yield the torques that two logs both determine: load, and Coulomb friction of one law."""
-    compared = (*OF_LOAD, *([COULOMB] if one.friction == other.friction else []))
+def _log_ratios(one: FileResult, other: FileResult) -> Iterator[tuple[str, float, float]]:
+    """Yield the logarithm of one value over the other, with its standard deviation, of load and Coulomb friction of one law."""
+    compared = (*LOAD_PATHS, *([COULOMB_PATH] if one.friction == other.friction else []))
     there = {(each.path, each.law): each for each in other.estimates if not each.why}
     for each in one.estimates:
         its = there.get((each.path, each.law))
         if each.path in compared and not each.why and its is not None and min(each.value, its.value) > 0.0:
-            yield each, its
-
-
-def _log_ratio(one: FileEstimate, other: FileEstimate) -> tuple[str, float, float]:
-    """Return the path of a number, the logarithm of one value over the other, and its standard deviation."""
-    sigma = float(np.hypot(one.own / one.value, other.own / other.value))
-    return one.path, float(np.log(one.value / other.value)), max(sigma, 1e-300)
+            sigma = float(np.hypot(each.own / each.value, its.own / its.value))
+            yield each.path, float(np.log(each.value / its.value)), max(sigma, 1e-300)
 
 
 def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
@@ -221,12 +196,12 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
     """
     logs = [each for each in files if each.recognised and each.recognised.kind == "log" and each.estimates and not each.same_as]
     remarks = dict[str, list[str]]()
-    for path in OF_LOAD:
+    for path in LOAD_PATHS:
         own = {log.name: next((each for each in log.estimates if each.path == path), None) for log in logs}
-        known = {name: each for name, each in own.items() if each is not None and not each.why}
-        for first, reference in list(known.items())[:1]:
+        determining = {name: each for name, each in own.items() if each is not None and not each.why}
+        for first, reference in list(determining.items())[:1]:
             for name, each in own.items():
-                if (each is None or name in known) and (words := _load_apart(each, reference)):
+                if (each is None or name in determining) and (words := _load_apart(each, reference)):
                     remarks.setdefault(name, []).append(f"{words}, of {first}")
     causes = "one joint had another load or its arm another pose, or these are two joints, each with a gear of its own"
     return {name: f"its load differs: {'; '.join(words)}; {causes}" for name, words in remarks.items()}
@@ -235,10 +210,10 @@ def other_loads(files: Sequence[FileResult]) -> dict[str, str]:
 def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     """Return in words how a number of a load differs from that of another log; empty if it does not."""
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
-        shows = reference.path == GRAVITY and reference.value > MAX_DISTANCE * reference.sigma
-        return f"no {GRAVITY} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
-    found = _contradiction(estimate, reference)
-    return found.words if estimate.unit == reference.unit and found.apart > MAX_DISTANCE else ""
+        shows = reference.path == GRAVITY_PATH and reference.value > MAX_DISTANCE * reference.sigma
+        return f"no {GRAVITY_PATH} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+    difference_of_loads = _contradiction(estimate, reference)
+    return difference_of_loads.words if estimate.unit == reference.unit and difference_of_loads.apart > MAX_DISTANCE else ""
 
 
 def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, FileEstimate] | None:
@@ -284,7 +259,7 @@ class _Contradiction(NamedTuple):
 
 def _taken(found: _Contradiction, parameters: Sequence[CombinedParameter], one: str, other: str) -> str:
     """Return which of two files a parameter is taken from, and why; empty if it is from neither."""
-    path = COULOMB if found.path == STEADY else found.path
+    path = COULOMB_PATH if found.path == STEADY_FRICTION else found.path
     source = next((each.source for each in parameters if each.estimate.path == path and each.source in (one, other)), "")
     if not source:
         return ""

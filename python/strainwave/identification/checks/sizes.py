@@ -1,8 +1,8 @@
-"""Checks of one file: its sizes against the start set and against the limits of gears."""
+"""Checks of one file: its sizes against the start set and against the limits of gears; likely mistakes in a unit."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.checks.mistakes import MAX_FACTOR_LEFT, nearest, times, wrong_units
+from strainwave.files.units import convert
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import Check, FileEstimate
 from strainwave.messages import as_option
 from strainwave.statistics.linear_fit import solved
 
@@ -39,6 +38,12 @@ SIZE_TOLERANCE = 1e-6  # relative: torques that differ by less have one size
 END_TOLERANCE = 1e-9  # relative: torques that differ by less are at the end of the range
 REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft about to slide
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
+MAX_FACTOR_LEFT = 4.0  # a mistake explains a factor if it leaves a smaller one
+# What the header of a column may name wrongly, and what it may be.
+MISTAKEN = {
+    "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
+    "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
+}  # fmt: skip
 
 
 def input_speed(speed: Array, source: str) -> Check:
@@ -67,14 +72,14 @@ def friction_level(
         remedy: what to check first
         max_factor: by which both may differ
     """
-    found, before = float(law.steady(speed)), float(start.steady(speed))
-    if before <= 0.0 or not found > 0.0:
+    fitted, before = float(law.steady(speed)), float(start.steady(speed))
+    if before <= 0.0 or not fitted > 0.0:
         return None
-    factor = found / before
+    factor = fitted / before
     return Check(
         "friction of the start set", source, max(factor, 1.0 / factor), max_factor, "1",
         not 1.0 / max_factor < factor < max_factor,
-        f"its friction is {found:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
+        f"its friction is {fitted:.3g} N·m at {speed:.3g} rad/s of the input, {times(factor)} that of the start set "
         f"({before:.3g} N·m)",
         remedy,
     )  # fmt: skip
@@ -127,30 +132,25 @@ def friction_of_table(recording: Recording, found: Fit, start: Gear, side: str |
     if accelerating.failed or side == "input" or ratio < MIN_RATIO:
         return
     speed = float(np.exp(np.mean(np.log(np.abs(table.speed)))))
-    law, known = found.gear.friction_input, start.friction_input
-    check = friction_level(law, known, speed, source, "")
+    law, law_of_set = found.gear.friction_input, start.friction_input
+    check = friction_level(law, law_of_set, speed, source, "")
     if check is None:
         return
-    factor = law.steady(speed) / known.steady(speed)
+    factor = law.steady(speed) / law_of_set.steady(speed)
     mistake, rest = nearest(factor, wrong_units("torque", recording.unit("torque")))
     remedy = f"{mistake}see whether the units of both columns are right"
     if side == "output":
         remedy = f"if it was measured at the input, give --side input; {mistake}see whether units are right"
-    elif factor > MAX_FACTOR and _off_at_output(table, law, known, ratio) < min(
-        np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))
-    ):
-        at_joint = law.steady(speed) / ratio / known.steady(speed * ratio)
-        remedy = (
-            f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured there, "
-            "give --side output; if at the input, --side input"
-        )
+    elif factor > MAX_FACTOR:
+        ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])  # were it measured at the output
+        off = np.abs(np.log(np.maximum(law.steady(ends) / ratio / law_of_set.steady(ends * ratio), 1e-300))).max()
+        if off < min(np.log(MAX_FACTOR), max(rest, np.log(MAX_FACTOR_LEFT))):
+            at_joint = law.steady(speed) / ratio / law_of_set.steady(speed * ratio)
+            remedy = (
+                f"taken as measured at the output, it gives {times(at_joint)} the friction of the set: if it was measured "
+                "there, give --side output; if at the input, --side input"
+            )
     yield Check(**vars(check) | {"remedy": remedy})
-
-
-def _off_at_output(table: FrictionTable, law: Any, known: Any, ratio: float) -> float:
-    """Return the logarithm between a table and the start set at both ends of its speeds, were it measured at the output."""
-    ends = np.array([np.abs(table.speed).min(), np.abs(table.speed).max()])
-    return float(np.abs(np.log(np.maximum(law.steady(ends) / ratio / known.steady(ends * ratio), 1e-300))).max())
 
 
 def friction_of_log(
@@ -169,10 +169,10 @@ def friction_of_log(
         constant: that a person gave of the motor [N.m/A]; 0 if none
     """
     speed = float(np.median(np.abs(speeds[speeds != 0.0]))) if np.any(speeds != 0.0) else 0.0
-    found, before = float(law.steady(speed)), float(start.steady(speed))
-    if speed <= 0.0 or before <= 0.0 or found < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
+    fitted, before = float(law.steady(speed)), float(start.steady(speed))
+    if speed <= 0.0 or before <= 0.0 or fitted < MIN_FACTOR_OF_LOG * before or abs(ratio) < MIN_RATIO:
         return
-    factor = found / before
+    factor = fitted / before
     unit = {"current": "mA and A", "voltage": "mV and V"}.get(effort, "mN·m and N·m")
     if effort == "current" and constant:
         constant *= 1e-3 if factor > 1.0 else 1e3
@@ -257,8 +257,8 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
         )  # fmt: skip
         if share > MAX_FRICTION_SHARE:
             return
-    measured, known = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
-    factor, squared, limit = max(measured / known, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
+    measured, of_set = max(spring, 0.0) / half, float(start.gear.stiffness.torque(half)) / half
+    factor, squared, limit = max(measured / of_set, 1e-300), start.gear.kinematics.ratio**2, _largest_factor(start)
     mistakes = {
         "angle and torque were measured at the input: give --side input": 1.0 / squared,
         "angle and torque were measured at the output: give --side output": squared,
@@ -268,7 +268,7 @@ def stiffness_of_loop(recording: Recording, found: Fit, start: GearSet, source: 
     mistakes |= {what: 1.0 / size for what, size in wrong_units("angle", recording.unit(angle)).items()}
     yield Check(
         "stiffness of the start set", source, max(factor, 1.0 / factor), limit, "1", not 1.0 / limit < factor < limit,
-        f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({known:.3g} N·m/rad)",
+        f"it gives {measured:.3g} N·m/rad, {times(factor)} that of the start set ({of_set:.3g} N·m/rad)",
         f"{nearest(factor, mistakes)[0]}see whether sides and units are right, and the start set is that of this gear",
     )  # fmt: skip
 
@@ -314,3 +314,31 @@ def hints_of_levels(table: Recording) -> Iterator[str]:
     speed = table["speed"]
     if (speed > 0.0).all() or (speed < 0.0).all():
         yield "it has one direction only: a zero error of the torque is counted as Coulomb friction; measure both"
+
+
+# ---- Mistakes in units -----------------------------------------------------------------------------------------------
+
+
+def wrong_units(quantity: str, unit: str) -> dict[str, float]:
+    """Return mistakes in the unit of a quantity, and the factor by which each makes it too large."""
+    return {f"the {quantity} is in {other}, not in {unit}": convert(1.0, unit, other) for other in MISTAKEN.get(unit, ())}
+
+
+def nearest(factor: float, mistakes: Mapping[str, float]) -> tuple[str, float]:
+    """Return the mistake that explains a factor best, in words, and the logarithm that it leaves; no words if none does.
+
+    >>> nearest(900.0, {"the torque is in mN.m, not in N.m": 1000.0})[0]
+    'perhaps the torque is in mN.m, not in N.m; '
+    """
+    distances = {name: abs(float(np.log(factor / size))) for name, size in mistakes.items()}
+    name, least = min(distances.items(), key=lambda item: item[1], default=("", np.inf))
+    return f"perhaps {name}; " if least < np.log(MAX_FACTOR_LEFT) else "", least
+
+
+def times(factor: float) -> str:
+    """Return a factor in words.
+
+    >>> times(1234.0)
+    '1 234 times'
+    """
+    return f"{factor:.3g} times" if factor < 100.0 else f"{factor:,.0f} times".replace(",", " ")

@@ -1,11 +1,14 @@
-"""Measurements that could be made of a gear or a drive, within its limits, and the information of each."""
+"""Measurements that could be made of a gear or a drive within its limits, and the choice among them by Fisher information.
+
+Fedorov1972; Atkinson2007, chapters 10 (criteria) and 12 (exchange).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +16,6 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear
 from strainwave.analysis.branches import slid
 from strainwave.files.recording import Recording
-from strainwave.identification.excitation.design import without_nuisances
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
@@ -22,6 +24,8 @@ from strainwave.parameters import every
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
+from strainwave.statistics.determined_sum import MIN_INFORMATION, MIN_MOVED, undetermined
+from strainwave.statistics.linear_fit import solved
 
 Array = NDArray[np.float64]
 SPEED_COUNT = 40  # of a friction table, from the lowest to the highest
@@ -35,6 +39,13 @@ LOOP_SAMPLES = 200
 COMMAND_SHARES = (1.0, 0.5, 0.25, 0.1)  # of a command
 USUAL_COLUMNS = ("input_angle", "current")  # columns of a log that nearly every drive records
 RELATIVE_NOISE = 0.01  # of the largest value of a channel, if no noise is given (assumed)
+Criterion = Literal["A", "D"]
+MIN_GAIN = 1e-9  # of a criterion; a smaller one is rounding
+MAX_PASSES = 50  # of exchanges; a handful is enough
+BUDGET_TOLERANCE = 1e-12  # relative, for rounding
+
+
+# ---- Measurements ----------------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)
@@ -134,8 +145,8 @@ def torsion(
                 continue
             loop = _loop(gear, largest, at)
             _, slopes = _predicted(loop, gear, paths)
-            rows, known = (slopes[:, 0] / _loop_sigma(noise, at, limits, resolution, amplitude / largest)).T, len(paths)
-            information = without_nuisances(rows[:, :known], rows[:, known:])
+            rows, count = (slopes[:, 0] / _loop_sigma(noise, at, limits, resolution, amplitude / largest)).T, len(paths)
+            information = without_nuisances(rows[:, :count], rows[:, count:])
             held = "input" if at is None else "output"
             turn = largest if at is None else abs(ratio) * largest
             words = (
@@ -168,15 +179,15 @@ def motion(
     drive: Drive, paths: Sequence[str], limits: Limits, noise: Noise, commands: Mapping[str, Scenario], sample: float
 ) -> Iterator[CandidateMeasurement]:
     """Yield runs of a drive from rest under commands, and under shares of them; those that keep the limits."""
-    known = outputs(drive)
-    channels = [name for name in noise if name in known] or [name for name in USUAL_COLUMNS if name in known]
+    recorded = outputs(drive)
+    channels = [name for name in noise if name in recorded] or [name for name in USUAL_COLUMNS if name in recorded]
     tried = [(name, share, command * share) for name, command in commands.items() for share in COMMAND_SHARES]
     runs = [(*each, simulate(drive, each[-1], sample=sample)) for each in tried]
-    kept = [each for each in runs if _kept(each[-1], limits)]
-    if not kept:
+    within_limits = [each for each in runs if _kept(each[-1], limits)]
+    if not within_limits:
         return
-    sigmas = [_sigma(noise, each, max(float(np.ptp(run[each])) for *_, run in kept)) for each in channels]
-    for name, share, command, run in kept:
+    sigmas = [_sigma(noise, each, max(float(np.ptp(run[each])) for *_, run in within_limits)) for each in channels]
+    for name, share, command, run in within_limits:
         experiment = DriveLog.of(run.select(["time", "command", *channels]), drive, channels)
         _, slopes = _predicted(experiment, drive, paths)
         rows = np.concatenate([slopes[:, row] / sigma for row, sigma in enumerate(sigmas)], axis=1).T
@@ -207,8 +218,91 @@ def _predicted(experiment: Experiment, model: Any, paths: Sequence[str]) -> tupl
     places = {path: each.number for path, each in every(model).items()}
     present = [row for row, path in enumerate(paths) if path in places]
     start = np.array([each.start for each in experiment.nuisances])
-    predicted, found = experiment.predict(model, [places[paths[row]] for row in present], start)
+    predicted, derivatives = experiment.predict(model, [places[paths[row]] for row in present], start)
     slopes = np.zeros((len(paths) + len(start), *predicted.shape))
-    slopes[present] = found[: len(present)]
-    slopes[len(paths) :] = found[len(present) :]
+    slopes[present] = derivatives[: len(present)]
+    slopes[len(paths) :] = derivatives[len(present) :]
     return predicted, slopes
+
+
+# ---- Choice ----------------------------------------------------------------------------------------------------------
+
+
+def without_nuisances(slopes: Array, of_nuisances: Array) -> Array:
+    """Return the information about parameters if the nuisances are unknown, too: the Schur complement, shape (p, p).
+
+    Args:
+        slopes: derivatives of what is measured by the parameters, over the noise, shape (n, p)
+        of_nuisances: the same by the nuisances, shape (n, q)
+    """
+    if of_nuisances.shape[1]:
+        slopes = slopes - of_nuisances @ solved(of_nuisances, slopes)
+    information: Array = slopes.T @ slopes
+    return information
+
+
+def score(information: Array, wanted: Sequence[int], criterion: Criterion) -> Array:
+    """Return the criterion of one information matrix or of many, the smaller the better, shape (…, p, p).
+
+    A: logarithm of the sum of the variances of the wanted parameters. D: logarithm of the determinant of their covariance.
+    """
+    p = information.shape[-1]
+    covariance = np.linalg.inv(information + MIN_INFORMATION * np.eye(p))[..., wanted, :][..., wanted]
+    if criterion == "D":
+        scored: Array = np.linalg.slogdet(covariance)[1]
+        return scored
+    return np.asarray(np.log(np.trace(covariance, axis1=-2, axis2=-1)))
+
+
+def best(
+    information: Array, cost: Array, budget: float, before: Array, wanted: Sequence[int], criterion: Criterion
+) -> list[int]:
+    """Return the places of the measurements to take, repeated ones several times: greedy by gain over cost, then by exchange.
+
+    Args:
+        information: of each candidate, in relative units, shape (m, p, p)
+        cost: of each, shape (m,)
+        budget: what all together may cost
+        before: what is known before, shape (p, p)
+        wanted: places of the parameters that count
+    """
+    chosen: list[int] = []
+    total, left = before.copy(), budget
+    while (affordable := np.flatnonzero(cost <= left * (1.0 + BUDGET_TOLERANCE))).size:
+        gain = score(total, wanted, criterion) - score(total + information[affordable], wanted, criterion)
+        place = int(np.argmax(gain / cost[affordable]))
+        if gain[place] <= MIN_GAIN:
+            break
+        chosen.append(int(affordable[place]))
+        total, left = total + information[chosen[-1]], left - cost[chosen[-1]]
+    return _exchanged(chosen, information, cost, left, before, wanted, criterion)
+
+
+def _exchanged(
+    chosen: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
+) -> list[int]:
+    """Return the places with single measurements replaced by others, as long as that improves the criterion."""
+    for _ in range(MAX_PASSES):
+        improved = False
+        for place, one in enumerate(chosen):
+            rest = before + information[[*chosen[:place], *chosen[place + 1 :]]].sum(axis=0)
+            possible = np.flatnonzero(cost <= (left + cost[one]) * (1.0 + BUDGET_TOLERANCE))
+            scores = score(rest + information[possible], wanted, criterion)
+            other = int(possible[np.argmin(scores)])
+            if scores.min() < score(rest + information[one], wanted, criterion) - MIN_GAIN:
+                left += float(cost[one] - cost[other])
+                chosen[place], improved = other, True
+        if not improved:
+            break
+    return sorted(chosen)
+
+
+def covariance_of(information: Array) -> Array:
+    """Return the covariance in relative units, shape (p, p); infinite for parameters of which a combination is not known."""
+    values, directions = np.linalg.eigh(information)
+    dead = undetermined(values)
+    root = directions[:, ~dead] / np.sqrt(values[~dead])
+    covariance: Array = root @ root.T
+    for place in np.flatnonzero((np.abs(directions[:, dead]) > MIN_MOVED).any(axis=1)):
+        covariance[place, place] = np.inf
+    return covariance

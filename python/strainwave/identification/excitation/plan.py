@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear, arguments, typeset
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.excitation import candidates as possible
-from strainwave.identification.excitation.candidates import CandidateMeasurement, Limits, Noise, Resolution
-from strainwave.identification.excitation.design import Criterion, best, covariance_of
+from strainwave.identification.excitation.candidates import (
+    CandidateMeasurement,
+    Criterion,
+    Limits,
+    Noise,
+    Resolution,
+    best,
+    covariance_of,
+)
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
@@ -138,12 +145,12 @@ class ExperimentPlan(Pictured):
         """
         from strainwave.drawing.simple import bars_figure
 
-        known = [each for each in self.expectations if np.isfinite(each.after) and each.value]
-        if not known:
+        determined = [each for each in self.expectations if np.isfinite(each.after) and each.value]
+        if not determined:
             raise ValueError("the plan determines no parameter, so there is nothing to draw")
-        before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in known]
-        after = [100.0 * each.after / abs(each.value) for each in known]
-        names = [each.path for each in known]
+        before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in determined]
+        after = [100.0 * each.after / abs(each.value) for each in determined]
+        names = [each.path for each in determined]
         bars = ({"before": before} if np.isfinite(before).any() else {}) | {"after": after}
         return bars_figure("Standard deviation over the value", names, bars, "%")
 
@@ -226,21 +233,34 @@ def plan_experiments(
     noise = _noise(noise or {}, whole)
     sensors = _resolution(resolution or {}, whole, limits)
     paths = [each.path for each in unknowns]
-    found = list(_candidates(whole, paths, kinds, limits, noise, sensors, durations or {}, commands, sample))
-    if not found and kinds == ["torsion"]:
+    lasting = {
+        kind: arguments.seconds(f"durations: {kind}", (durations or {}).get(kind, usual))
+        for kind, usual in USUAL_DURATIONS.items()
+    }
+    gear, of_gear = (whole.gear, [path.removeprefix("gear.") for path in paths]) if isinstance(whole, Drive) else (whole, paths)
+    measurements: list[CandidateMeasurement] = []
+    if "friction" in kinds:
+        measurements += possible.friction(gear, of_gear, limits, noise, sensors, lasting["friction"])
+    if "torsion" in kinds:
+        measurements += possible.torsion(gear, of_gear, limits, noise, sensors, lasting["torsion"])
+    if "motion" in kinds:
+        if not isinstance(whole, Drive) or not commands:
+            raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
+        measurements += possible.motion(whole, paths, limits, noise, commands, arguments.seconds("sample", sample))
+    if not measurements and kinds == ["torsion"]:
         raise ValueError(
             f"no loop up to {limits.torque:g} N.m has {possible.MIN_STEPS:g} times the resolution of its sensors; give a finer "
             "resolution, or a higher torque_limit"
         )
-    if not found:
+    if not measurements:
         raise ValueError("none of the commands keeps the limits; give smaller ones, or other experiments")
-    information = np.stack([each.information for each in found]) * np.outer(scale, scale)
+    information = np.stack([each.information for each in measurements]) * np.outer(scale, scale)
     before = _information_before(model, known, unknowns, scale)
     asked = {each.path for each in _named("wanted", whole, wanted)}
     everything = before + information.sum(axis=0)
     reach = np.isfinite(np.diag(covariance_of(everything)))  # a parameter that nothing determines must not stop the rest
     places = [place for place, each in enumerate(unknowns) if each.path in asked and reach[place]]
-    cost = np.array([each.duration for each in found])
+    cost = np.array([each.duration for each in measurements])
     if budget > MAX_MEASUREMENTS * cost.min():
         raise ValueError(
             f"time = {budget:g} s is enough for more than {MAX_MEASUREMENTS} measurements of {cost.min():g} s; give less time, "
@@ -249,9 +269,15 @@ def plan_experiments(
     chosen_places = best(information, cost, budget, before, places, criterion) if places else []
     after = before + information[chosen_places].sum(axis=0)
     expectations = _expectations(unknowns, scale, before, after, everything, asked, kinds)
-    return ExperimentPlan(
-        _steps(found, chosen_places, unknowns), expectations, _notes(kinds, limits, noise, sensors, resolution or {})
-    )
+    taken = [(measurements[place], often) for place, often in sorted(Counter(chosen_places).items())]
+    steps = tuple(
+        PlannedMeasurement(
+            each.kind, each.words, each.settings, often, often * each.duration,
+            tuple(_determined(often * each.information, unknowns)),
+        )
+        for each, often in taken
+    )  # fmt: skip
+    return ExperimentPlan(steps, expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
 
 
 def _whole(model: object, moves: bool) -> Any:
@@ -290,10 +316,10 @@ def _named(name: str, whole: Any, paths: Sequence[str]) -> list[Parameter]:
 def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
     """Return the standard deviations that are given, by names that are known."""
     arguments.mapping("noise", noise, '{"friction": 1e-3}')
-    known = ["friction", "torsion", "input_torsion", *(outputs(whole) if isinstance(whole, Drive) else ())]
+    names = ["friction", "torsion", "input_torsion", *(outputs(whole) if isinstance(whole, Drive) else ())]
     for name in noise:
-        if name not in known:
-            raise ValueError(f"noise: {name} is none of {listed(known)}")
+        if name not in names:
+            raise ValueError(f"noise: {name} is none of {listed(names)}")
     return {name: arguments.number(f"noise: {name}", sigma, low=0.0) for name, sigma in noise.items()}
 
 
@@ -303,8 +329,8 @@ def _resolution(given: Mapping[str, float], whole: Any, limits: Limits) -> Resol
     gear = whole.gear if isinstance(whole, Drive) else whole
     usual = Resolution.usual(limits.torque, float(gear.kinematics.ratio))
     for name in given:
-        if name not in (known := [field.name for field in fields(usual)]):
-            raise ValueError(f"resolution: {name} is none of {listed(known)}")
+        if name not in (names := [field.name for field in fields(usual)]):
+            raise ValueError(f"resolution: {name} is none of {listed(names)}")
     return replace(usual, **{name: arguments.number(f"resolution: {name}", value, low=0.0) for name, value in given.items()})
 
 
@@ -325,33 +351,6 @@ def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: fl
     if lowest is not None:
         lowest = arguments.number("lowest_speed", lowest, "rad/s", low=0.0, high=highest)
     return Limits(highest, min(torques, default=np.inf), MIN_SPEED_SHARE * highest if lowest is None else lowest)
-
-
-def _candidates(
-    whole: Any,
-    paths: Sequence[str],
-    kinds: Sequence[str],
-    limits: Limits,
-    noise: Noise,
-    resolution: Resolution,
-    durations: Mapping[str, float],
-    commands: Mapping[str, Scenario] | None,
-    sample: float,
-) -> list[CandidateMeasurement]:
-    asked = {kind: durations.get(kind, usual) for kind, usual in USUAL_DURATIONS.items()}
-    lasting = {kind: arguments.seconds(f"durations: {kind}", duration) for kind, duration in asked.items()}
-    gear = whole.gear if isinstance(whole, Drive) else whole
-    of_gear = [path.removeprefix("gear.") if isinstance(whole, Drive) else path for path in paths]
-    found: list[CandidateMeasurement] = []
-    if "friction" in kinds:
-        found += possible.friction(gear, of_gear, limits, noise, resolution, lasting["friction"])
-    if "torsion" in kinds:
-        found += possible.torsion(gear, of_gear, limits, noise, resolution, lasting["torsion"])
-    if "motion" in kinds:
-        if not isinstance(whole, Drive) or not commands:
-            raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
-        found += possible.motion(whole, paths, limits, noise, commands, arguments.seconds("sample", sample))
-    return found
 
 
 def _information_before(model: object, known: Known | None, unknowns: Sequence[Parameter], scale: Array) -> Array:
@@ -393,26 +392,13 @@ def _of_fit(fit: Fit, unknowns: Sequence[Parameter], scale: Array) -> Array:
     return before
 
 
-def _steps(
-    found: Sequence[CandidateMeasurement], places: Sequence[int], unknowns: Sequence[Parameter]
-) -> tuple[PlannedMeasurement, ...]:
-    steps = [(found[place], often) for place, often in sorted(Counter(places).items())]
-    return tuple(
-        PlannedMeasurement(
-            each.kind, each.words, each.settings, often, often * each.duration,
-            tuple(_determined(often * each.information, unknowns)),
-        )
-        for each, often in steps
-    )  # fmt: skip
-
-
 def _determined(information: Array, unknowns: Sequence[Parameter]) -> Iterator[DeterminedSum]:
     """Yield what data of an information determine to half its value: parameters, then sums of those not separated."""
     sums = {each.paths: each for place in range(len(unknowns)) if (each := _sum(information, place, unknowns)) is not None}
-    known: set[str] = set()
+    determined: set[str] = set()
     for paths, each in sorted(sums.items(), key=lambda item: len(item[0])):
-        if known.isdisjoint(paths) and not is_uncertain(each.value, each.sigma):
-            known.update(paths)
+        if determined.isdisjoint(paths) and not is_uncertain(each.value, each.sigma):
+            determined.update(paths)
             yield each
 
 

@@ -151,10 +151,10 @@ def with_load(recording: Recording, ratio: float, side: str | None = "input") ->
         loss = "is part of the Coulomb torque" if load.any() else "is not determined"
         remark = f"all its rows are at one load of {held}: the loss under load {loss}; record two loads or more"
         return _loaded(recording, torque, load / ratio), (remark,)
-    found, _ = _plain(speed, np.sign(speed) * np.abs(torque), load)
-    at_input = MIN_LOSS <= found < MAX_LOSS or not MIN_LOSS <= ratio * found < MAX_LOSS
+    loss_per_load, _ = _plain(speed, np.sign(speed) * np.abs(torque), load)
+    at_input = MIN_LOSS <= loss_per_load < MAX_LOSS or not MIN_LOSS <= ratio * loss_per_load < MAX_LOSS
     side, other = ("input", "output") if at_input else ("output", "input")
-    losses = (found, found * ratio) if at_input else (found * ratio, found)
+    losses = (loss_per_load, loss_per_load * ratio) if at_input else (loss_per_load * ratio, loss_per_load)
     remark = f"the load is counted at the {side}: the loss is {losses[0]:.3g} of it; it would be {losses[1]:.3g} at the {other}"
     return _loaded(recording, torque, load if at_input else load / ratio), (remark,)
 
@@ -166,17 +166,17 @@ def varies(load: Array) -> bool:
 
 
 def _loaded(recording: Recording, torque: Array, load: Array) -> Recording:
-    kept = {name: recording[name] for name in recording.names if name not in ("output_torque", "load_torque")}
-    units = {name: recording.unit(name) for name in kept} | {"torque": "N.m", "load": "N.m"}
-    return Recording(kept | {"torque": torque, "load": load}, units, recording.title)
+    columns = {name: recording[name] for name in recording.names if name not in ("output_torque", "load_torque")}
+    units = {name: recording.unit(name) for name in columns} | {"torque": "N.m", "load": "N.m"}
+    return Recording(columns | {"torque": torque, "load": load}, units, recording.title)
 
 
 def _plain(speed: Array, torque: Array, load: Array) -> tuple[float, float]:
     """Return the loss per load [1] by plain least squares, and the sum of squares left [N2.m2]."""
     way = np.sign(speed)
     columns = np.stack([way, speed, way * np.abs(load)], axis=1)
-    found = solved(columns, torque)
-    return float(found[2]), float(np.sum((torque - columns @ found) ** 2))
+    coefficients = solved(columns, torque)
+    return float(coefficients[2]), float(np.sum((torque - columns @ coefficients) ** 2))
 
 
 def _sign_of_output(speed: Array, torque: Array, load: Array) -> float:

@@ -29,7 +29,6 @@ SPEED_CUTOFF_FACTOR = 4.0  # over the cut-off of the acceleration: reversals mus
 FILTER_SAMPLES = 20  # samples compared, each side: there the response of the filter is below 1e-9 of its peak
 END_SAMPLES = 5  # samples of the decimated series that the ends of the filters spoil, each side
 MAX_GAP_STEPS = 2.5  # steps: a longer time without a row is a gap
-CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
 MIN_SLOW_SHARE = 0.5  # of the power of the acceleration, that lies below a vibration (assumed)
 MAX_FULL_BAND_ROWS = 8_000  # that a fit in the full band compares
 MIN_SAMPLES = 200  # of a log of a motion
@@ -59,7 +58,7 @@ class Motion(ComparedByFields):
     every: int
     cutoff: float
 
-    @property
+    @cached_property
     def step(self) -> float:
         """Step of the grid [s]."""
         return float(self.time[-1] - self.time[0]) / (len(self.time) - 1)
@@ -75,12 +74,6 @@ class Motion(ComparedByFields):
         """Samples that take part in a comparison in the pass band, shape (n,)."""
         compared: NDArray[np.bool_] = self.known & ~self.turning
         return compared
-
-    @cached_property
-    def states(self) -> Array:
-        """Angle, speed, acceleration, and time since the sample before, as inverse dynamics takes them, shape (n, 4)."""
-        steps = np.diff(self.time, prepend=self.time[0])
-        return np.column_stack([self.angle, np.where(self.resting, 0.0, self.speed), self.acceleration, steps])
 
     @cached_property
     def _response(self) -> Array:
@@ -145,23 +138,6 @@ class Motion(ComparedByFields):
         for distance, share in enumerate(shares):
             smooth[..., distance : distance + blocks] += share
         return smooth[..., FILTER_SAMPLES + self.rows // self.every]
-
-    def late(self, series: Array, delay: float) -> tuple[Array, Array]:
-        """Return series on the grid after a delay [s], and the derivative of the first by the delay, shapes (k, n), (n,).
-
-        Interpolated by the cubic of Catmull and Rom (1974), whose slope has no steps: a fit of the delay then ends.
-        """
-        n = len(self.time)
-        shift = min(max(delay / self.step, -n), n)
-        whole = int(np.floor(shift))
-        u = 1.0 - (shift - whole)
-        weights = CATMULL_ROM @ np.array([1.0, u, u**2, u**3])
-        change = CATMULL_ROM @ np.array([0.0, 1.0, 2.0 * u, 3.0 * u**2]) / -self.step
-        near = series[:, np.clip(np.arange(-2, n + 1) - whole, 0, n - 1)]
-        taps = [near[:, tap : tap + n] for tap in range(4)]
-        after: Array = sum((weight * tap for weight, tap in zip(weights, taps, strict=True)), np.zeros_like(series))
-        by_delay: Array = sum((rate * tap[0] for rate, tap in zip(change, taps, strict=True)), np.zeros(n))
-        return after, by_delay
 
 
 def motion_of(

@@ -22,7 +22,7 @@ from strainwave.identification.experiments.experiment import (
     sensible,
     with_step,
 )
-from strainwave.identification.experiments.friction_table import ROOM_TEMPERATURE
+from strainwave.identification.experiments.friction_table import FRICTIONLESS, ROOM_TEMPERATURE
 from strainwave.identification.experiments.motion import MAX_GAP_STEPS, Motion, in_gap, motion_of
 from strainwave.messages import listed
 from strainwave.native import kernels
@@ -33,6 +33,7 @@ Side = Literal["input", "output"]
 EFFORTS = {"current": "A", "input_torque": "N.m", "joint_torque": "N.m", "voltage": "V"}  # best first
 REVERSAL_ANGLE = 0.1  # rad of the input: bristles have bent by then (assumed), and friction is that of sliding
 MAX_OUTLIER_SIGMA = 6.0  # standard deviations of the noise
+CATMULL_ROM = np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]]) / 2  # of 1, u, u2, u3: of four samples
 OUTLIER_WINDOW = 101  # samples, over which ripple and noise may grow
 MAX_SHARE_OF_GAPS = 0.2  # of the time of a log: with more of it, gaps are why nothing is left to compare
 MIN_SOUND = 0.999  # share of sound samples around an instant: rounding of times decides nothing
@@ -119,9 +120,9 @@ class MotionLog(ComparedByFields):
         sound_there = (on_grid(sound.astype(float)) > MIN_SOUND) & ~in_gap(time, motion.time, motion.step)
         motion = replace(motion, known=motion.known & sound_there)
         _check_moves(motion, time)
-        known = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
+        extra = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
-            motion, effort, force, on_grid(values), sound_there, known,
+            motion, effort, force, on_grid(values), sound_there, extra,
             {name: on_grid(recording[name]) for name in regressors},
         )  # fmt: skip
 
@@ -229,8 +230,8 @@ class MotionLog(ComparedByFields):
         unknown = self._unknown(nuisances)
         effort = per_torque(model, self.effort) * torque + self.induced(model)
         if self.delayed:
-            effort = self.motion.late(effort[np.newaxis], unknown["delay"])[0][0]
-        return np.asarray(effort + sum(_zeros(unknown)))
+            effort = late(effort[np.newaxis], unknown["delay"], self.motion.step)[0][0]
+        return np.asarray(effort + unknown.get(f"{self.effort}_zero", 0.0))
 
     def residual(self, model: Drive, nuisances: Array) -> Array:
         """Return measured less predicted effort at every instant of the grid, at rest, too, shape (m,).
@@ -242,7 +243,6 @@ class MotionLog(ComparedByFields):
     def _on_grid(self, model: Drive, numbers: Sequence[int], nuisances: Array) -> tuple[Array, Array]:
         """Return the effort at every instant of the grid, and its derivatives by numbers of the drive and by the nuisances."""
         unknown, others = self._unknown(nuisances), self._others(nuisances)
-        zeros = _zeros(unknown)
         described = _core.parameters(model)
         paths = [described[number][0] for number in numbers]
         scale = per_torque(model, self.effort)
@@ -254,14 +254,14 @@ class MotionLog(ComparedByFields):
         ]
         by_load = scale * self._by_load(model, others, torque) if self.regressors else torque
         of_shares = [by_load * each for each in self.regressors.values()]
-        series, by_delay = np.stack([effort, *slopes, *of_shares]), list[Array]()
+        series = np.stack([effort, *slopes, *of_shares])
+        of_measurement = [np.ones_like(effort)] if f"{self.effort}_zero" in unknown else []
         if self.delayed:
-            series, change = self.motion.late(series, unknown["delay"])
-            by_delay = [change]
-        own, of_nuisances = series[1 : 1 + len(slopes)], series[1 + len(slopes) :]
-        by_zero = [np.ones_like(effort) for _ in zeros]
-        found = np.array([*own, *by_zero, *by_delay, *of_nuisances]).reshape(-1, len(effort))
-        return series[0] + sum(zeros), found
+            series, by_delay = late(series, unknown["delay"], self.motion.step)
+            of_measurement.append(by_delay)
+        by_numbers, by_shares = np.split(series[1:], [len(slopes)])
+        every = np.array([*by_numbers, *of_measurement, *by_shares]).reshape(-1, len(effort))
+        return series[0] + unknown.get(f"{self.effort}_zero", 0.0), every
 
     def _unknown(self, nuisances: Array) -> dict[str, float]:
         """Return the value of each nuisance by its name."""
@@ -292,29 +292,38 @@ class MotionLog(ComparedByFields):
         return np.asarray((there - torque) / step)
 
 
+def late(series: Array, delay: float, step: float) -> tuple[Array, Array]:
+    """Return series after a delay, and the derivative of the first by the delay, shapes (k, n), (n,).
+
+    Interpolated by the cubic of Catmull and Rom (1974), whose slope has no steps: a fit of the delay then ends.
+
+    Args:
+        series: shape (k, n)
+        delay: [s]
+        step: between samples [s]
+    """
+    n = series.shape[1]
+    shift = min(max(delay / step, -n), n)
+    whole = int(np.floor(shift))
+    u = 1.0 - (shift - whole)
+    weights = CATMULL_ROM @ np.array([1.0, u, u**2, u**3])
+    change = CATMULL_ROM @ np.array([0.0, 1.0, 2.0 * u, 3.0 * u**2]) / -step
+    near = series[:, np.clip(np.arange(-2, n + 1) - whole, 0, n - 1)]
+    after, by_delay = np.zeros_like(series), np.zeros(n)
+    for tap, (weight, rate) in enumerate(zip(weights, change, strict=True)):
+        after = after + weight * near[:, tap : tap + n]
+        by_delay = by_delay + rate * near[0, tap : tap + n]
+    return after, by_delay
+
+
 def turnover_speed(speed: Array) -> float:
     """Return the speed of the input about which the sign of friction turns over [rad/s], by the speeds of a log."""
     return max(TURNS_OVER * float(np.quantile(np.abs(speed), FAST_QUANTILE)), 1e-300)
 
 
-def _zeros(unknown: Mapping[str, float]) -> list[float]:
-    """Return the zeros of channels among nuisances."""
-    return [value for name, value in unknown.items() if name.endswith("_zero")]
-
-
 def inertia_of(drive: Drive) -> float:
     """Return the inertia of the load [kg.m2]; 0 for one that is moved from outside."""
     return float(getattr(drive.load, "inertia", 0.0))
-
-
-def rigid_drive(drive: Drive) -> Drive:
-    """Return the drive with a rigid gear: ratio, input inertia and friction alone.
-
-    Along a measured motion stiffness, hysteresis and kinematic error move neither shaft; without them it takes less time.
-    """
-    gear = drive.gear
-    places = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
-    return drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **places))
 
 
 def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[str] = ()) -> tuple[Array, Array]:
@@ -332,16 +341,28 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     Returns:
         torque, shape (n,); derivatives, shape (paths, n), 0 by numbers that a rigid drive lacks
     """
-    rigid = rigid_drive(drive)
+    gear = drive.gear  # without stiffness, hysteresis and kinematic error, which move no shaft along a measured motion
+    friction = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
+    rigid = drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **friction))
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(rigid))}
     inputs = np.zeros((len(motion.time), INPUT_COUNT))
     inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
+    speed, steps = np.where(motion.resting, 0.0, motion.speed), np.diff(motion.time, prepend=motion.time[0])
+    states = np.column_stack([motion.angle, speed, motion.acceleration, steps])
+    asked = [numbers[paths[place]] for place in places]
     with kernels.prepared(rigid, "inverse_dynamics", len(inputs)):
-        torque, slopes = _core.inverse_dynamics(rigid, motion.states, inputs, [numbers[paths[place]] for place in places])
-    found = np.zeros((len(paths), len(torque)))
-    found[places] = slopes
-    return torque, found
+        torque, by_numbers = _core.inverse_dynamics(rigid, states, inputs, asked)
+    slopes = np.zeros((len(paths), len(torque)))
+    slopes[places] = by_numbers
+    return torque, slopes
+
+
+def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
+    """Return the torque that a rigid gear transmits to the output, on the grid of the motion [N.m]."""
+    gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, input_inertia=0.0)
+    still = drive.replace(gear=gear, motor=drive.motor.replace(inertia=MIN_INERTIA))
+    return np.asarray(gear.kinematics.ratio * needed_torque(still, log.motion, log.extra)[0])
 
 
 def per_torque(drive: Drive, effort: str) -> float:

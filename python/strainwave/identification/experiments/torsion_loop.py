@@ -10,13 +10,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments
+from strainwave import _core, arguments, structure
 from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING_SHARE, monotone, slid, still_slides, thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import RELATIVE_STEP, Nuisance, changing, with_step
-from strainwave.identification.experiments.stages import series_compliance
 
 Array = NDArray[np.float64]
 
@@ -92,7 +91,10 @@ class TorsionLoop(ComparedByFields):
                 "structure.Lumped())"
             )
         twist = twist - give * torque
-        twist, torque, moments = thinned(twist, torque, _moments(recording))
+        clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
+        duration = float(np.ptp(clock))
+        moments = (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
+        twist, torque, moments = thinned(twist, torque, moments)
         corners: list[tuple[int, float]] = []
         if ratio is not None:
             settled = slid(twist)
@@ -127,14 +129,14 @@ class TorsionLoop(ComparedByFields):
     def nuisances(self) -> tuple[Nuisance, ...]:
         if self.single_branch:
             return ()
-        found = [Nuisance("torque_zero", "N.m", self.torque_zero)]
+        unknowns = [Nuisance("torque_zero", "N.m", self.torque_zero)]
         if self.twist_zero is None:
-            found.append(Nuisance("twist_zero", "rad", self.centre))
+            unknowns.append(Nuisance("twist_zero", "rad", self.centre))
         if self.torque_drift is not None:
-            found.append(Nuisance("torque_drift", "N.m", self.torque_drift))
+            unknowns.append(Nuisance("torque_drift", "N.m", self.torque_drift))
         if self.twist_drift is not None:
-            found.append(Nuisance("twist_drift", "rad", self.twist_drift))
-        return tuple(found)
+            unknowns.append(Nuisance("twist_drift", "rad", self.twist_drift))
+        return tuple(unknowns)
 
     @cached_property
     def single_branch(self) -> bool:
@@ -245,13 +247,6 @@ class TorsionLoop(ComparedByFields):
         return np.concatenate(([twist[0] - sense * PRESLIDING_SHARE * np.ptp(twist)], twist))
 
 
-def _moments(recording: Recording) -> Array:
-    """Return the time of each sample as a share of the duration, shape (n,)."""
-    clock = recording.time if "time" in recording.names else np.arange(float(len(recording)))
-    duration = float(np.ptp(clock))
-    return (clock - clock[0]) / duration if duration > 0.0 else np.linspace(0.0, 1.0, len(clock))
-
-
 def _crossings(twist: Array, torque: Array) -> Array:
     """Return the twists at which the torque passes zero upwards [rad]."""
     at = np.flatnonzero((torque[:-1] < 0.0) & (torque[1:] >= 0.0))
@@ -262,3 +257,27 @@ def _crossings(twist: Array, torque: Array) -> Array:
 def at_input(recording: Recording) -> bool:
     """True if a torsion loop was measured at the input, with the output locked."""
     return not {"twist", "torque"} <= set(recording.names)
+
+
+def series_compliance(gear: Gear) -> float:
+    """Return the compliance at the output in series with the spring, the input shaft held [rad/(N.m)]; 0 without stages.
+
+    The flight actuator paper's statics, corrected (its eq. (1) at rest, with errata 1 and 2 of the flight actuator paper):
+    radial displacements times tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear
+    one torque,
+
+        tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG).
+
+    >>> import strainwave as sw
+    >>> gear = sw.GearSet.read("tilt-actuator").gear
+    >>> round(1e6 * series_compliance(gear), 3), series_compliance(sw.Gear())
+    (37.049, 0.0)
+    """
+    stages = gear.structure
+    if not isinstance(stages, structure.Staged):
+        return 0.0
+    radius, slope = stages.pitch_radius, float(np.tan(stages.pressure_angle))
+    bearing = slope**2 / (stages.bearing_stiffness * radius**2)
+    mesh = (1.0 + slope**2) / (stages.mesh_stiffness * radius**2)
+    coupling = 1.0 / (stages.coupling_stiffness * gear.kinematics.ratio**2)
+    return bearing + mesh + 1.0 / stages.circular_spline_stiffness + coupling

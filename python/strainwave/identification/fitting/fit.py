@@ -15,15 +15,12 @@ from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
-from strainwave.identification.experiments.drive_log import DriveLog
-from strainwave.identification.experiments.driven_log import DrivenLog, driven
+from strainwave.identification.experiments.drive_log import DriveLog, DrivenLog, driven
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, LossName, Squared
-from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, Prior, plan
+from strainwave.identification.fitting.problem import LOSSES, FitRecord, LossName, Problem, Squared, Weights
+from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.simulation.resolution import warn_of_bristles
@@ -209,11 +206,12 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named, pictures_of
-        from strainwave.identification.results.picture_plot import pictures_figure
+        from strainwave.identification.results.pictures import part_named, pictures_figure, pictures_of
 
         part = part_named(self, record)
-        return pictures_figure(pictures_of(self, record), f"Measured and predicted {_channels_of(part, len(self.parts) > 1)}")
+        channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
+        of = f", {part.name}" if len(self.parts) > 1 else ""
+        return pictures_figure(pictures_of(self, record), f"Measured and predicted {channels}{of}")
 
     def plot_residual_spectrum(self, record: str | None = None) -> Figure:
         """Return a figure of the amplitude spectra of a log: of each channel measured, and of its residual.
@@ -228,8 +226,7 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name, or the record has no time
             TypeError: the name is no text
         """
-        from strainwave.identification.results.curves import part_named
-        from strainwave.identification.results.residual_spectrum import spectrum_figure
+        from strainwave.identification.results.pictures import part_named, spectrum_figure
 
         part = part_named(self, record)
         return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
@@ -263,12 +260,6 @@ class Fit(ComparedByFields, Pictured):
 
     def _remarks(self) -> Iterator[str]:
         return iter(self.doubts)
-
-
-def _channels_of(part: RecordFit, named: bool) -> str:
-    """Return the channels of a record in words, with its name if there are several records."""
-    channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
-    return f"{channels}, {part.name}" if named else channels
 
 
 Measured = Recording | Experiment
@@ -359,19 +350,23 @@ def fit(
         for own, each in zip(_models(model, asked), records.values(), strict=True)
     ]
     problem = problem_of(asked, model, experiments, _masks(training, list(records)), loss)
-    for record, (predicted, _) in zip(problem.records, problem.predict(problem.start()), strict=True):
-        _check_motion(record.experiment, predicted)
-    found = solved_from(problem, problem.start())
-    for part in found.parts:
-        if isinstance(part.experiment, DriveLog):
-            warn_of_bristles(part.model, part.experiment.step(part.model))
-        elif isinstance(part.experiment, DrivenLog):
-            warn_of_bristles(driven(part.model), part.experiment.step(part.model))
-    return found
+    for experiment, (predicted, _) in zip(experiments, problem.predict(problem.start()), strict=True):
+        if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):  # nothing changes with its parameters
+            raise ValueError(
+                "the model does not move under this command, though the drive did: nothing can be fitted from there. Start "
+                "with less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit "
+                "of the command is right"
+            )
+    fitted = solved_from(problem, problem.start())
+    for part in fitted.parts:
+        if isinstance(part.experiment, DriveLog | DrivenLog):
+            moved = part.model if isinstance(part.experiment, DriveLog) else driven(part.model)
+            warn_of_bristles(moved, part.experiment.step(part.model))
+    return fitted
 
 
-def solved_problem(found: Fit) -> tuple[Problem, Array]:
-    """Return the least squares of a fit, and the unknowns that solve it.
+def solved_problem(found: Fit, more: Sequence[Prior] = ()) -> tuple[Problem, Array]:
+    """Return the least squares of a fit, with further priors if there are any, and the unknowns that solve it without them.
 
     Raises:
         TypeError: not a fit
@@ -379,10 +374,11 @@ def solved_problem(found: Fit) -> tuple[Problem, Array]:
     if not isinstance(found, Fit):
         raise TypeError(f"found must be a Fit, which sw.fit returns, not {shortened(found)}")
     experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
-    problem = problem_of(found.plan, found.parts[0].model, experiments, masks, found.loss)
-    known, tied = len(found.plan.unknowns), len(found.plan.tied)
+    asked = replace(found.plan, priors=(*found.plan.priors, *more))
+    problem = problem_of(asked, found.parts[0].model, experiments, masks, found.loss)
+    free, tied = len(found.plan.unknowns), len(found.plan.tied)
     values = [each.value for each in found.estimates]
-    return problem, np.array(values[:known] + values[known + tied :])
+    return problem, np.array(values[:free] + values[free + tied :])
 
 
 def with_priors(found: Fit, priors: Mapping[str, tuple[float, float]]) -> Fit:
@@ -392,13 +388,11 @@ def with_priors(found: Fit, priors: Mapping[str, tuple[float, float]]) -> Fit:
     """
     places = {each.path: place for place, each in enumerate(found.plan.unknowns)}
     more = [Prior(places[path], 1.0, *prior) for path, prior in priors.items()]
-    asked = replace(found.plan, priors=(*found.plan.priors, *more))
-    experiments, masks = [part.experiment for part in found.parts], [part.training for part in found.parts]
-    _, x = solved_problem(found)
+    problem, x = solved_problem(found, more)
     for each in more:
         if abs(x[each.unknown] - each.value) > MAX_START_SIGMA * each.sigma:
             x[each.unknown] = each.value
-    return solved_from(problem_of(asked, found.parts[0].model, experiments, masks, found.loss), x)
+    return solved_from(problem, x)
 
 
 def problem_of(
@@ -410,7 +404,7 @@ def problem_of(
         _check_branch(experiment, [link.path for link in links])
         of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
         built.append(FitRecord(experiment, mask, own, links, of_gear, first))
-        first += len(experiment.nuisances)
+        first = built[-1].nuisances.stop
     return Problem(asked, built, loss)
 
 
@@ -496,16 +490,6 @@ def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
         raise ValueError(
             f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from stiffness; "
             "free parameters of the stiffness alone, or measure a loop that loads and unloads"
-        )
-
-
-def _check_motion(experiment: Experiment, predicted: Array) -> None:
-    """Raise ValueError for a model that stands still: nothing changes with its parameters, and a fit would end at its start."""
-    if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):
-        raise ValueError(
-            "the model does not move under this command, though the drive did: nothing can be fitted from there. Start with "
-            "less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit of the "
-            "command is right"
         )
 
 

@@ -1,24 +1,22 @@
-"""Least squares on free parameters of a model and unknowns of measurements, in numbers scaled to their size."""
+"""Least squares on free parameters of a model and unknowns of measurements."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
-from strainwave.identification.fitting.estimate import Estimate
-from strainwave.identification.fitting.loss import LOSSES, LossName, Squared, curvature, slope
-from strainwave.identification.fitting.unknowns import OF_RECORD, FitParameters, ParameterLink
-from strainwave.identification.fitting.waves import Waves
+from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, ParameterLink, Unknown
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
@@ -27,6 +25,8 @@ MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
+LossName = Literal["linear", "soft_l1"]
+AMPLITUDES = ("amplitude", "torque")  # in a name in place of "phase"
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,8 @@ class FitRecord:
 
     Attributes:
         measured: what the fit compares with, shape (channels, n); that of the experiment
+        of_measurement: unknowns of the measurement
+        nuisances: their places among the unknowns
     """
 
     def __init__(
@@ -88,7 +90,8 @@ class FitRecord:
             raise ValueError(
                 f"training has shape {self.training.shape}; the measurement has {n} samples, give one value for each"
             )
-        self.nuisances = slice(first, first + len(experiment.nuisances))
+        self.of_measurement = experiment.nuisances
+        self.nuisances = slice(first, first + len(self.of_measurement))
         self._before = model
         self._numbers = [value for _, value, *_ in _core.parameters(model)]
         numbers = {path: place for place, (path, *_) in enumerate(_core.parameters(self.part_of(model)))}
@@ -98,7 +101,7 @@ class FitRecord:
     @property
     def samples(self) -> int:
         """Count of the measured values that take part."""
-        return int(self.training.sum()) * len(self.experiment.channels)
+        return int(self.training.sum()) * len(self.measured)
 
     def part_of(self, model: Any) -> Any:
         """Return the part of the model that the experiment is of."""
@@ -135,19 +138,13 @@ class _SettledError(Exception):
         self.part = part
 
 
-def _step(rows: Array, left: Array) -> tuple[Array, float]:
-    """Return the step of Gauss and Newton, and its decrease of the sum of squares if residuals were linear."""
-    step = solved(rows, -left)
-    return step, float(np.sum((rows @ step) ** 2))
-
-
 class Problem:
     """Least squares of all records: the unknowns, their prediction, and its weighted difference to the measurement."""
 
     def __init__(self, plan: FitParameters, records: Sequence[FitRecord], loss: LossName) -> None:
         self.plan, self.records, self.loss_name, self.loss = plan, records, loss, LOSSES[loss]
         known = len(plan.unknowns)
-        self.size = known + sum(len(record.experiment.nuisances) for record in records)
+        self.size = known + sum(len(record.of_measurement) for record in records)
         if self.size == 0:
             raise ValueError("free must name at least one parameter: nothing else of this measurement is unknown")
         samples = sum(record.samples for record in records)
@@ -166,7 +163,7 @@ class Problem:
 
     def start(self) -> Array:
         """Return the unknowns from which a fit starts, within their limits, shape (unknowns,)."""
-        nuisances = [each.start for record in self.records for each in record.experiment.nuisances]
+        nuisances = [each.start for record in self.records for each in record.of_measurement]
         return np.array([each.start for each in self.plan.unknowns] + nuisances)
 
     def limits(self) -> Array:
@@ -232,7 +229,7 @@ class Problem:
         columns = np.concatenate((self.jacobian(x, before or self.first_weights()), self.prior_rows()[0]))
         size = np.linalg.norm(columns, axis=0)
         leverage = np.sum(np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))[0] ** 2, axis=1)
-        found, first = [], 0
+        weights, first = [], 0
         for record, residual in zip(self.records, self.residuals(x), strict=True):
             channels, n = residual.shape
             used = leverage[first : first + channels * n].reshape(channels, n).sum(axis=1, keepdims=True)
@@ -240,8 +237,8 @@ class Problem:
             sigma = self.loss.sigma(residual) * np.sqrt(n / np.maximum(n - used, 1.0))
             sigma = np.maximum(sigma, MIN_NOISE * scale(record.measured))
             lengths = [correlation_length(slope(self.loss, row)) for row in residual / sigma]
-            found.append(Weights(1.0 / sigma, np.full((channels, 1), float(np.exp(np.mean(np.log(lengths)))))))
-        return found
+            weights.append(Weights(1.0 / sigma, np.full((channels, 1), float(np.exp(np.mean(np.log(lengths)))))))
+        return weights
 
     def solve(
         self, start: Array, weights: Sequence[Weights], tolerance: float, held: Sequence[int] = (), trials: int = MAX_TRIALS
@@ -294,7 +291,8 @@ class Problem:
             columns = linearised(part.tobytes())
             rows, left = columns[:, :-1], columns[:, -1]
             if squared:
-                step, gain = _step(rows, left)
+                step = solved(rows, -left)  # of Gauss and Newton
+                gain = float(np.sum((rows @ step) ** 2))  # decrease of the sum of squares if residuals were linear
                 if gain <= MIN_RELATIVE_GAIN * tolerance * float(left @ left):
                     raise _SettledError(np.clip(part + step, lowest, highest))
             return rows
@@ -390,9 +388,122 @@ class Problem:
         described += [(each.path, each.unit, each.before, at_limit[each.unknown]) for each in tied]
         for name, record in zip(self.plan.records, self.records, strict=True):
             own = f"{OF_RECORD}{name}" if len(self.records) > 1 else ""
-            described += [(f"{each.name}{own}", each.unit, each.start, False) for each in record.experiment.nuisances]
+            described += [(f"{each.name}{own}", each.unit, each.start, False) for each in record.of_measurement]
         estimates = tuple(
             Estimate(path, unit, before, float(value), float(s), bool(end), float(f))
             for (path, unit, before, end), value, s, f in zip(described, values, sigma, freedom[order], strict=True)
         )
         return estimates, covariance
+
+
+# ---- Loss functions --------------------------------------------------------------------------------------------------
+
+
+class Loss(Protocol):
+    """Cost of residuals, in units of their standard deviation; a fit minimises half of `cost(residual**2)`."""
+
+    def sigma(self, residual: Array) -> Array:
+        """Return the standard deviation of the noise, shape (channels, 1), from residuals, shape (channels, n)."""
+        ...
+
+    def cost(self, squares: Array) -> Array:
+        """Return the cost over the square of a residual, and its first and second derivative, shape (3, n)."""
+        ...
+
+
+class Squared:
+    """The square itself: best where noise is normal."""
+
+    def sigma(self, residual: Array) -> Array:
+        return np.asarray(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)))
+
+    def cost(self, squares: Array) -> Array:
+        return np.stack((squares, np.ones_like(squares), np.zeros_like(squares)))
+
+
+class SoftL1:
+    """Like the square for residuals within their standard deviation, like the absolute value far beyond: outliers pull little.
+
+    Cost 2 (sqrt(1 + z) - 1): Charbonnier et al., IEEE Trans. Image Process. 6 (1997) 298-311. The standard deviation is that of
+    normal noise with the same median absolute value, which outliers hardly change (Hampel 1974).
+    """
+
+    def sigma(self, residual: Array) -> Array:
+        return robust_sigma(residual, axis=1)[:, np.newaxis]
+
+    def cost(self, squares: Array) -> Array:
+        root = np.sqrt(1.0 + squares)
+        return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
+
+
+LOSSES: dict[LossName, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
+
+
+def slope(loss: Loss, residual: Array) -> Array:
+    """Return the derivative of half the cost by the residual."""
+    return np.asarray(residual * loss.cost(residual**2)[1])
+
+
+def curvature(loss: Loss, residual: Array) -> Array:
+    """Return the second derivative of half the cost by the residual."""
+    _, first, second = loss.cost(residual**2)
+    return np.asarray(first + 2.0 * residual**2 * second)
+
+
+# ---- Waves, as a solver moves them -----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """The waves among the unknowns of a fit.
+
+    Attributes:
+        amplitude, phase: places of the unknowns of each wave, shape (waves,)
+        turned: phase at the start of the fit, from which the imaginary part counts [rad], shape (waves,)
+    """
+
+    amplitude: NDArray[np.intp]
+    phase: NDArray[np.intp]
+    turned: Array
+
+    @classmethod
+    def of(cls, unknowns: Sequence[Unknown], start: Array, free: NDArray[np.intp]) -> Waves:
+        """Return the waves whose amplitude and phase are both free and not limited but for the sign of the amplitude."""
+        places = {unknowns[place].path: place for place in free.tolist() if place < len(unknowns)}
+        pairs = [
+            (places[path], phase)
+            for name, phase in places.items() if "phase" in name
+            for path in (name.replace("phase", amplitude) for amplitude in AMPLITUDES) if path in places
+        ]  # fmt: skip
+        pairs = [
+            (own, phase) for own, phase in pairs
+            if start[own] > 0.0 and np.isinf([unknowns[phase].low, unknowns[phase].high, unknowns[own].high]).all()
+        ]  # fmt: skip
+        amplitude, phase = np.array(pairs, np.intp).reshape(-1, 2).T
+        return cls(amplitude, phase, start[phase])
+
+    def parts(self, x: Array) -> Array:
+        """Return unknowns with real and imaginary part in the places of amplitude and phase."""
+        parts, wave = x.copy(), x[self.amplitude] * np.exp(1j * (x[self.phase] - self.turned))
+        parts[self.amplitude], parts[self.phase] = wave.real, wave.imag
+        return parts
+
+    def unknowns(self, parts: Array) -> Array:
+        """Return the unknowns of parts; a phase is within half a turn of that at the start."""
+        unknowns, wave = parts.copy(), parts[self.amplitude] + 1j * parts[self.phase]
+        unknowns[self.amplitude], unknowns[self.phase] = np.abs(wave), self.turned + np.angle(wave)
+        return unknowns
+
+    def slopes(self, rows: Array, x: Array) -> Array:
+        """Return derivatives by the parts, of those by the unknowns at x, shape (samples, unknowns)."""
+        slopes, angle = rows.copy(), x[self.phase] - self.turned
+        along, across = rows[:, self.amplitude], rows[:, self.phase] / np.maximum(x[self.amplitude], 1e-300)
+        slopes[:, self.amplitude] = along * np.cos(angle) - across * np.sin(angle)
+        slopes[:, self.phase] = along * np.sin(angle) + across * np.cos(angle)
+        return slopes
+
+    def limits(self, ends: Array) -> Array:
+        """Return lowest and highest values of the parts, of those of the unknowns, shape (unknowns, 2)."""
+        limits = ends.copy()
+        limits[self.amplitude], limits[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
+        return limits

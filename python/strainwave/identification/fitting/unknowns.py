@@ -1,4 +1,4 @@
-"""Unknowns of a fit: free numbers of a model, shared by all records or one for each, and their priors."""
+"""Unknowns of a fit: free numbers of a model, shared by all records or one for each, their priors, and their estimates."""
 
 from __future__ import annotations
 
@@ -8,10 +8,15 @@ from math import isfinite
 from typing import Any
 from warnings import warn
 
-from strainwave import Drive, Gear, arguments
+import numpy as np
+
+from strainwave import Drive, Gear, arguments, typeset
+from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, Quantity
 from strainwave.messages import listed, quoted, shortened
 from strainwave.parameters import Parameter, every, parameters, unknown
+from strainwave.presentation import Presented
+from strainwave.statistics.scale import ONE_SIGMA, student
 
 LIMIT_TOLERANCE = 1e-6  # of the size of a parameter: within it of a limit, a fit ended there
 MAX_DISTANCE = 0.1  # of the size of a parameter before the fit, from its limit: a fit that ended there moved it
@@ -219,9 +224,9 @@ class _Parameters:
             for each, records in self._named("fixed", key):
                 if each.path in self.free:
                     raise ValueError(f"{each.path} is both free and fixed; take it out of one of the two")
-                given = arguments.number(f"fixed[{quoted(key)}]", value, each.unit, "[]", each.low, each.high)
+                number = arguments.number(f"fixed[{quoted(key)}]", value, each.unit, "[]", each.low, each.high)
                 for record in records:
-                    numbers[record][each.number] = given
+                    numbers[record][each.number] = number
         return tuple(map(tuple, numbers))
 
     def _leaders(self, ties: Mapping[str, Any], fixed: Mapping[str, Any]) -> dict[str, tuple[str, float]]:
@@ -230,14 +235,15 @@ class _Parameters:
         for path, followed in ties.items():
             if path not in self.known:
                 raise unknown(path, self.known)
-            pair = (followed, 1.0) if isinstance(followed, str) else followed
-            if not (isinstance(pair, tuple | list) and len(pair) == 2 and isinstance(pair[0], str)):
-                raise TypeError(
-                    f"ties[{quoted(path)}] must be a path, or a path and a factor as (path, 2.0), not {shortened(followed)}"
-                )
-            leader, factor = pair[0], arguments.number(f"the factor of ties[{quoted(path)}]", pair[1])
-            if factor == 0.0:
-                raise ValueError(f"the factor of ties[{quoted(path)}] is 0; to make {path} zero, name it in fixed")
+            leader, factor = followed, 1.0
+            if not isinstance(followed, str):
+                if not (isinstance(followed, tuple | list) and len(followed) == 2 and isinstance(followed[0], str)):
+                    raise TypeError(
+                        f"ties[{quoted(path)}] must be a path, or a path and a factor as (path, 2.0), not {shortened(followed)}"
+                    )
+                leader, factor = followed[0], arguments.number(f"the factor of ties[{quoted(path)}]", followed[1])
+                if factor == 0.0:
+                    raise ValueError(f"the factor of ties[{quoted(path)}] is 0; to make {path} zero, name it in fixed")
             if leader not in self.known:
                 raise unknown(leader, self.known)
             if path in self.free:
@@ -257,11 +263,13 @@ class _Parameters:
             (path, record): (each.low, each.high) for path, each in self.free.items() for record in range(len(self.records))
         }
 
-        def narrow(path: str, record: int, low: float, high: float, why: str) -> None:
+        def narrow(path: str, record: int, low: float, high: float, name: str, key: str) -> None:
             before = limits[path, record]
             limits[path, record] = (max(before[0], low), min(before[1], high))
             if limits[path, record][0] >= limits[path, record][1]:
-                raise ValueError(f"{why} leaves {path} no value: it must lie in [{before[0]:g}, {before[1]:g}] too")
+                raise ValueError(
+                    f"{name}[{quoted(key)}] leaves {path} no value: it must lie in [{before[0]:g}, {before[1]:g}] too"
+                )
 
         for key, pair in bounds.items():
             if not (isinstance(pair, tuple | list) and len(pair) == 2):
@@ -271,11 +279,11 @@ class _Parameters:
                 raise ValueError(f"bounds[{quoted(key)}] = ({low:g}, {high:g}) must have the lower end first")
             for each, records in self._named("bounds", key, self.free):
                 for record in records:
-                    narrow(each.path, record, low, high, f"bounds[{quoted(key)}]")
+                    narrow(each.path, record, low, high, "bounds", key)
         for path, (leader, factor) in leaders.items():
             low, high = sorted((self.known[path].low / factor, self.known[path].high / factor))
             for record in range(len(self.records)):
-                narrow(leader, record, low, high, f"ties[{quoted(path)}]")
+                narrow(leader, record, low, high, "ties", path)
         return limits
 
     def _unknown(self, path: str, record: int | None, limits: Mapping[tuple[str, int], tuple[float, float]]) -> Unknown:
@@ -284,26 +292,26 @@ class _Parameters:
             *(limits[path, i] for i in ([record] if record is not None else range(len(self.records)))), strict=True
         )
         name = self._named_of(path, record)
-        found = Unknown(name, each.unit, each.value, max(lows), min(highs))
-        if found.start != each.value:
+        asked = Unknown(name, each.unit, each.value, max(lows), min(highs))
+        if asked.start != each.value:
             warn(
-                f"{name} starts at {found.start:g} {each.unit}: its value {each.value:g} {each.unit} lies out of its bounds",
+                f"{name} starts at {asked.start:g} {each.unit}: its value {each.value:g} {each.unit} lies out of its bounds",
                 RuntimeWarning,
                 stacklevel=5,
             )
-        return found
+        return asked
 
     def _priors(self, priors: Mapping[str, Any], links: tuple[tuple[ParameterLink, ...], ...]) -> tuple[Prior, ...]:
         """Return the priors of the unknowns; those of one record go before those of all."""
-        found: dict[tuple[int, str], Prior] = {}
+        priors_of: dict[tuple[int, str], Prior] = {}
         linked = {link.path for link in links[0]}
         for key, given in sorted(priors.items(), key=lambda item: OF_RECORD in str(item[0])):
             for each, records in self._named("priors", key, linked):
                 value, sigma = _prior(key, given, each)
                 for record in records:
                     link = next(link for link in links[record] if link.path == each.path)
-                    found[link.unknown, each.path] = Prior(link.unknown, link.factor, value, sigma)
-        return tuple(found.values())
+                    priors_of[link.unknown, each.path] = Prior(link.unknown, link.factor, value, sigma)
+        return tuple(priors_of.values())
 
     def _named(self, name: str, key: object, among: Any = None) -> list[tuple[Parameter, Sequence[int]]]:
         """Return the parameters that a key names, and the records for which: all, or the one behind the @."""
@@ -338,3 +346,52 @@ def _prior(key: str, given: object, parameter: Parameter) -> tuple[float, float]
     value = arguments.number(f"the value of {name}", given[0], parameter.unit)
     sigma = arguments.number(f"the sigma of {name}", given[1], parameter.unit, low=0.0)
     return value, sigma
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate(ComparedByFields, Presented):
+    """Estimate of one parameter.
+
+    Attributes:
+        path: of the parameter in the model
+        unit: its unit
+        start: value before the fit
+        value: value after it
+        sigma: half the width of the interval that contains the true value with 68 %, by Student's distribution: the standard
+            deviation if samples are many; infinite if the data do not determine it
+        at_limit: True if the fit ended at a limit of the parameter
+        freedom: independent samples beyond the number of unknowns [1]
+
+    >>> import numpy as np
+    >>> import strainwave as sw
+    >>> speed = np.linspace(1.0, 50.0, 60)
+    >>> torque = 0.02 + 3e-4 * speed + 1e-4 * np.random.default_rng(0).normal(size=60)
+    >>> table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.01, breakaway=0.01, viscous=3e-4))
+    >>> (estimate,) = sw.fit(gear, table, ["friction_input.coulomb"]).estimates
+    >>> round(estimate.value, 5), [round(end, 5) for end in estimate.interval()], estimate.unit
+    (0.02001, [0.01998, 0.02004], 'N.m')
+    """
+
+    path: str
+    unit: str
+    start: float
+    value: float
+    sigma: float
+    at_limit: bool
+    freedom: float = np.inf
+
+    def interval(self, confidence: float = 0.95) -> tuple[float, float]:
+        """Return the interval that contains the true value with this probability, if the model is right.
+
+        >>> low, high = Estimate("friction_input.coulomb", "N.m", 0.1, 0.02, 0.001, False, freedom=4.0).interval()
+        >>> round(low, 4), round(high, 4)
+        (0.0176, 0.0224)
+        """
+        confidence = arguments.number("confidence", confidence, low=0.0, high=1.0)
+        reach = self.sigma * student(confidence, self.freedom) / student(ONE_SIGMA, self.freedom)
+        return self.value - reach, self.value + reach
+
+    def _headline(self) -> str:
+        limit = ", at its limit" if self.at_limit else ""
+        return f"{self.path} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}{limit}"

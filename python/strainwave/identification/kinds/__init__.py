@@ -44,5 +44,5 @@ def kind_named(name: str) -> Kind:
     'a torsion loop or branch'
     """
     module, _, own = KINDS[name].place.rpartition(".")
-    found: type[Kind] = getattr(import_module(f"{__name__}.{module}"), own)
-    return found(name)
+    kind_class: type[Kind] = getattr(import_module(f"{__name__}.{module}"), own)
+    return kind_class(name)

@@ -9,48 +9,72 @@ from typing import Any
 import numpy as np
 
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.confirmed import confirmed, other_laws, refit, spread_by_blocks, spread_by_models
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
-from strainwave.identification.candidates.motion_model import INPUT, LOSSES, sliding
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
-from strainwave.identification.candidates.ripple import is_one_wave
-from strainwave.identification.candidates.rotor import (
+from strainwave.identification.candidates.motion_candidate import (
     SHARE_OF_UNKNOWN_ROTOR,
+    MotionCandidate,
+    confirmed,
     inertia_at_input,
+    other_laws,
+    refit,
     slopes_by_rotor,
+    spread_by_blocks,
+    spread_by_models,
     with_rotor,
 )
+from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding
+from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
+    RATIO_BY_ORDERS,
     RATIO_OF_ENCODERS,
+    checks_of_motion,
     held_out_error,
+    motions_of_both_shafts,
     ratio_of_encoders,
     speed_against_angle,
     speed_of_another_clock,
     torque_constant_by_voltage,
     unit_of_torque,
 )
-from strainwave.identification.checks.motion import RATIO_BY_ORDERS, checks_of_motion
-from strainwave.identification.checks.shape import Judged, judged_shape
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
+from strainwave.identification.checks.unexplained import Judged, judged_shape
 from strainwave.identification.experiments.drive_log import ENCODERS
-from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, turnover_speed
+from strainwave.identification.experiments.friction_table import FrictionTable
+from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, transmitted_torque, turnover_speed
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
-from strainwave.identification.kinds.two_encoders import orders_of, with_error
+from strainwave.identification.kinds.two_encoders import (
+    orders_of,
+    picture_of_turn,
+    with_error,
+)
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import picture_of_friction, picture_of_turn
-from strainwave.identification.results.determined import PATH as STEADY, friction_at
-from strainwave.identification.results.file_result import BEHIND_GEAR, FileEstimate, FileResult, Picture, is_uncertain
+from strainwave.identification.results.file_result import (
+    BEHIND_GEAR,
+    BREAKAWAY_PATH,
+    COULOMB_PATH,
+    LOAD_INERTIA,
+    MAX_SHARE_OF_PLAIN,
+    MOTOR_INERTIA,
+    Check,
+    FileEstimate,
+    FileResult,
+    HeldOut,
+    is_uncertain,
+)
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import MAX_SHARE_OF_PLAIN, HeldOut
-from strainwave.identification.results.identifiability import MAX_SIGMA_OF_PHASE
-from strainwave.identification.results.motor_inertia import LOAD as INERTIA, MOTOR
-from strainwave.identification.results.undetermined import PriorOfSet, moved, priors_of, priors_of_undetermined
+from strainwave.identification.results.identifiability import (
+    MAX_SIGMA_OF_PHASE,
+    PriorOfSet,
+    moved,
+    priors_of,
+    priors_of_undetermined,
+)
+from strainwave.identification.results.pictures import Picture
+from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_at
 from strainwave.messages import listed
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
@@ -58,14 +82,14 @@ from strainwave.statistics.determined_sum import DeterminedSum
 
 SLIDING_SPEED_FACTOR = 4.0  # of the speed at which friction turns its sign: beyond it the mean over both senses is within 0.1 %
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
-FRICTION = ("friction_input", "friction_mesh")  # parts of the gear
-COULOMB, VISCOUS = f"{INPUT}coulomb", f"{INPUT}viscous"
-DRY_TORQUES = (COULOMB, f"{INPUT}breakaway")  # that a zero of the torque shifts
+FRICTION_PARTS = ("friction_input", "friction_mesh")  # parts of the gear
+VISCOUS_PATH = f"{INPUT}viscous"
+DRY_TORQUES = (COULOMB_PATH, BREAKAWAY_PATH)  # that a zero of the torque shifts
 ONE_WAY = "the motion goes one way only: Coulomb friction and the zero of the torque are one number; record both directions"
-DETENT, DEPTH = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
+DETENT_PATHS, DEPTH_PATHS = f"{INPUT}detent_", f"{INPUT}amplitude["  # numbers of waves over the angle
 ONE_WAVE = "the motion goes nearly one way: a detent and friction over the angle are one wave; record both directions"
 DEPTH_BY_SET = "it counts from Coulomb friction, whose split from viscous friction is that of the start set"
-OF_ROTOR = (
+UNKNOWN_ROTOR = (
     "the inertia of the motor is not known, and with it the torque of the load, on which this loss rests: give "
     "--constant motor_inertia=NUMBER"
 )
@@ -74,86 +98,76 @@ CHECKS_OF = {  # numbers of the drive by which estimates scale, and the checks o
     "torque constant": {CONSTANT_BY_VOLTAGE, INERTIA_IN_TWO_WAYS},
 }
 RELATIVE_SIGMA_OF_GIVEN = 1e-6  # of a number that a person gives, in the fit
+SPEED_BINS = 16  # of each direction of motion, with as many samples each
 
 
 def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
     """Return the estimates of a log along its motion, and between its encoders; and the gear with them."""
-    taken, start = log_of(file, known), known.initial.gear
-    drive, recording, in_current, remarks = taken.drive, taken.recording, taken.in_current, list(taken.remarks)
-    models = _models(taken)
+    prepared, name, start = log_of(file, known), file.path.name, known.initial.gear
+    drive, recording, in_current = prepared.drive, prepared.recording, prepared.in_current
+    models = _models(prepared)
     best, held_out, predicted = confirmed(models[0], models[1:], drive)
-    others = [each for each in models if each.model is not best.model]
-    log = best.log
-    other = _other_laws(best, others, in_current) if taken.has_friction else ()
-    of_model = [*_delay(best), *other]
-    if file.neighbours and not file.regressors:
-        of_model.insert(0, _other_joints(list(file.neighbours), list(log.regressors)))
+    others, log = [each for each in models if each.model is not best.model], best.log
+    remarks = [*_other_joints(file, log), *_delay(best), *_other_laws(best, others, prepared)]
     apart = spread_by_models(best, others)
-    judged, estimates = _judged(best, apart, taken, known)
+    judged, estimates = _judged(best, apart, prepared, known)
     if judged is not best:
         refitted, by_set = refit(judged)
         if refitted.error > MAX_SHARE_OF_PLAIN * held_out.error:  # the record contradicts the set: no prior
-            judged, estimates = best, list(_of_motion(best, apart, taken))
+            judged, estimates = best, list(_of_motion(best, apart, prepared))
         else:
             held_out, predicted = replace(refitted, plain=held_out.plain), by_set
-    checks = list(held_out_error(held_out, file.path.name, file.neighbours))
-    between = FileResult(file.path.name)
+    checks = list(held_out_error(held_out, name, file.neighbours))
+    between = FileResult(name)
     if set(ENCODERS) <= set(recording.names):
         errors = _errors(file, recording, abs(start.kinematics.ratio))
-        between, known = between_encoders(taken, judged, errors, known, file.path.name)
+        between, known = between_encoders(prepared, judged, errors, known, name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
-        checks += [*ratio_of_encoders(errors.ratio, drive, file.path.name), *between.checks]
-        if rotor := next((each for each in between.estimates if each.path == MOTOR and not each.why and not in_current), None):
+        checks += [*ratio_of_encoders(errors.ratio, drive, name), *between.checks]
+        rotor = next((each for each in between.estimates if each.path == MOTOR_INERTIA and not each.why), None)
+        if rotor is not None and not in_current:
             squared = drive.gear.kinematics.ratio**2
-            taken = replace(taken, drive=drive.replace({MOTOR: rotor.value}), rotor=rotor.sigma * squared)
-            judged, estimates = _judged(with_rotor(best, rotor.value), apart, taken, known)
+            prepared = replace(prepared, drive=drive.replace({MOTOR_INERTIA: rotor.value}), rotor=rotor.sigma * squared)
+            judged, estimates = _judged(with_rotor(best, rotor.value), apart, prepared, known)
         along = {each.path: each for each in estimates if not each.why}
         surer = {each.path: each for each in between.estimates if not (each.why and each.path in along)}
         estimates = [each for each in (*estimates, *orders_of(errors)) if each.path not in surer] + list(surer.values())
         remarks += [*errors.remarks, *between.remarks]
-        known = with_error(known, errors, file.path.name)
-    best = judged
-    if not in_current and taken.has_friction:
-        known, estimates = _with_friction(known, best, estimates, file.path.name)
-    law = sliding(best.fit.parts[0].model)
-    name, speed = file.path.name, log.motion.speed
-    ratio, column = start.kinematics.ratio, file.columns[log.effort]
-    if not in_current and taken.has_friction:
-        given = file.constants.get("torque_constant", 0.0)
+        known = with_error(known, errors, name)
+    best, speed, ratio = judged, log.motion.speed, start.kinematics.ratio
+    if not in_current and prepared.has_friction:
+        known, estimates = _with_friction(known, best, estimates, name)
         checks += friction_of_log(
-            law, start.friction_input, speed, log.effort, name, ratio=ratio, column=column, constant=given
-        )
+            sliding(best.fit.parts[0].model), start.friction_input, speed, log.effort, name, ratio=ratio,
+            column=file.columns[log.effort], constant=file.constants.get("torque_constant", 0.0),
+        )  # fmt: skip
     checks += [
         *unit_of_torque(file),
         *speed_against_angle(file),
+        *motions_of_both_shafts(file, ratio),
         input_speed(speed, name),
-        *_given_inertia(taken, name),
-        *_torque_constant(taken, name),
+        *_given_inertia(prepared, name),
     ]
+    constant = float(getattr(prepared.drive.motor, "torque_constant", 0.0))
+    if not in_current and constant > 0.0:
+        at_rows = np.interp(recording.time, prepared.log.motion.time, prepared.log.motion.speed)
+        checks += torque_constant_by_voltage(recording, at_rows, constant, name)
     checks += checks_of_motion(best, drive, recording, held_out, file)
-    unchecked = _unchecked(taken, file, estimates, {check.name for check in checks})
-    of_model += _scales(unchecked, log.effort)
+    unchecked = _unchecked(prepared, file, estimates, {check.name for check in checks})
     shaped = _shape(predicted, log, held_out, ratio, name)
-    checks += shaped.checks
-    every = (
-        *of_model,
-        *speed_of_another_clock(file),
-        *file.remarks,
-        *remarks,
-        *_shares(best.fit, file.regressors),
-        *shaped.remarks,
-    )
-    dry = [each for each in estimates if each.path == COULOMB and (not each.why or each.in_combination)]
-    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and taken.has_friction else []
-    pictures = (Picture(predicted), *of_friction, *between.pictures)
-    return (
-        FileResult(
-            name, file, best.name, tuple(estimates), every, tuple(checks), pictures=pictures, held_out=held_out,
-            fit=best.fit, bend=best.bend, between=between.between, unchecked=unchecked,
-        ),
-        known,
+    remarks += [
+        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *file.remarks, *prepared.remarks,
+        *_shares(best.fit, file.regressors), *shaped.remarks,
+    ]  # fmt: skip
+    dry = [each for each in estimates if each.path == COULOMB_PATH and (not each.why or each.in_combination)]
+    of_friction = [picture_of_friction(best.fit, "A" if in_current else "N.m")] if dry and prepared.has_friction else []
+    result = FileResult(
+        name, file, best.name, tuple(estimates), tuple(remarks), (*checks, *shaped.checks),
+        pictures=(Picture(predicted), *of_friction, *between.pictures), held_out=held_out, fit=best.fit, bend=best.bend,
+        between=between.between, unchecked=unchecked,
     )  # fmt: skip
+    return result, known
 
 
 def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
@@ -183,18 +197,22 @@ def _fitted(taken: PreparedLog, log: MotionLog) -> tuple[MotionCandidate, ...]:
     """Return the models of a log, best first."""
     priors = {path: (value, RELATIVE_SIGMA_OF_GIVEN * value) for path, value in taken.given.items()}
     logs = [log] if taken.in_current else bands(log, taken.drive)
-    if INERTIA in taken.given and not taken.motor_known:
-        return fit_motion(logs, taken.drive.replace({INERTIA: taken.given[INERTIA]}), inertia=MOTOR)
+    if LOAD_INERTIA in taken.given and not taken.motor_known:
+        return fit_motion(logs, taken.drive.replace({LOAD_INERTIA: taken.given[LOAD_INERTIA]}), inertia=MOTOR_INERTIA)
     return fit_motion(logs, taken.drive, priors=priors)
 
 
-def _other_joints(names: Sequence[str], terms: Sequence[str]) -> str:
-    """Return the sentence about the terms of other joints that move."""
+def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
+    """Yield the sentence about the terms of other joints that move."""
+    names, terms = list(file.neighbours), list(log.regressors)
+    if not names or file.regressors:
+        return
     which = f"joint {names[0]} moves too: " if len(names) == 1 else f"joints {listed(names)} move too: "
     if not terms:
-        return f"{which}none of their terms makes the model predict better; if they load it, record longer"
+        yield f"{which}none of their terms makes the model predict better; if they load it, record longer"
+        return
     own = "inertia is its mean over the record, gravity what goes with the angle of this joint alone"
-    return f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
+    yield f"{which}{len(terms)} terms of them are fitted, {listed(terms)}; numbers are as sure as these terms: {own}"
 
 
 def _delay(best: MotionCandidate) -> Iterator[str]:
@@ -207,10 +225,10 @@ def _delay(best: MotionCandidate) -> Iterator[str]:
 
 def _errors(file: Recognised, recording: Recording, ratio: float) -> TransmissionError:
     """Return the transmission error; without orders of the input if the ratio of its motor angle was only assumed."""
-    column, given = file.columns.get("reflected_angle"), file.constants.get("ratio")
-    assumed = column is not None and given is None
+    column, stated = file.columns.get("reflected_angle"), file.constants.get("ratio")
+    assumed = column is not None and stated is None
     option = "--constant ratio=NUMBER"
-    errors = transmission_error(recording, ratio=ratio if assumed else given, ratio_option=option)
+    errors = transmission_error(recording, ratio=ratio if assumed else stated, ratio_option=option)
     if not assumed:
         return errors
     why = (
@@ -235,7 +253,7 @@ def _unchecked(taken: PreparedLog, file: Recognised, estimates: Sequence[FileEst
     elif "ratio" not in file.constants:
         values["ratio"] += ", of the start set"
     if effort == "joint_torque":
-        dry = next((each.value for each in estimates if each.path == COULOMB and not each.why), None)
+        dry = next((each.value for each in estimates if each.path == COULOMB_PATH and not each.why), None)
         at_output = "" if dry is None else f"; Coulomb friction at the output is {dry * ratio:.4g} N·m with any ratio"
         values["ratio"] += f" (friction at the input scales with it{at_output})"
     elif effort == "input_torque":
@@ -257,10 +275,10 @@ def _scales(unchecked: Mapping[str, str], effort: str) -> Iterator[str]:
         yield f"it does not check {names[0]}: friction, inertia and gravity scale with it"
 
 
-def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], in_current: bool) -> Iterator[str]:
+def _other_laws(best: MotionCandidate, others: Sequence[MotionCandidate], taken: PreparedLog) -> Iterator[str]:
     """Yield a sentence for each law of friction that predicts as well: numbers of friction belong to their law."""
-    for other in other_laws(best, others):
-        law, unit = other.model.law, "A" if in_current else "N·m"
+    for other in other_laws(best, others) if taken.has_friction else ():
+        law, unit = other.model.law, "A" if taken.in_current else "N·m"
         yield (
             f"another law of friction, {type(law).__name__}, predicts as well, with a Coulomb torque of {law.coulomb:.3g} "
             f"{unit}: use the friction over the measured speeds, not the Coulomb torque alone"
@@ -302,12 +320,12 @@ def _with_friction(
     loss is fitted with the friction of that file as its prior.
     """
     gear, before = best.fit.parts[0].model.gear, known.gear_set.gear
-    laws = [part for part in FRICTION if getattr(gear, part) != getattr(before, part)]
-    earlier = COULOMB in map(plain, known.determined_by)
-    own = any(each.path == COULOMB and not each.why for each in estimates)
+    laws = [part for part in FRICTION_PARTS if getattr(gear, part) != getattr(before, part)]
+    earlier = COULOMB_PATH in map(plain, known.determined_by)
+    own = any(each.path == COULOMB_PATH and not each.why for each in estimates)
     if not laws:
         return known, estimates
-    if not known.determined & set(FRICTION) or (own and not earlier):
+    if not known.determined & set(FRICTION_PARTS) or (own and not earlier):
         return known.with_fit(gear, laws, estimates, name), estimates
     if "friction_mesh" in known.determined or not any(each.path == LOSSES[0] and not each.why for each in estimates):
         return known, estimates
@@ -318,26 +336,17 @@ def _with_friction(
     return known.with_fit(again.parts[0].model.gear, ["friction_mesh"], estimates, name), estimates
 
 
-def _torque_constant(taken: PreparedLog, name: str) -> Iterator[Check]:
-    """Yield the check of the torque constant by the voltage that the motor induces, if a log has both."""
-    constant = float(getattr(taken.drive.motor, "torque_constant", 0.0))
-    if taken.in_current or constant <= 0.0:
-        return
-    speed = np.interp(taken.recording.time, taken.log.motion.time, taken.log.motion.speed)
-    yield from torque_constant_by_voltage(taken.recording, speed, constant, name)
-
-
 def _given_inertia(taken: PreparedLog, name: str) -> Iterator[Check]:
     """Yield the check that a given inertia of the load agrees with the log."""
-    if INERTIA not in taken.given:
+    if LOAD_INERTIA not in taken.given:
         return
     drive, shown = taken.drive, fit_plain(taken.log, taken.drive).inertia
-    given = drive.motor.inertia + drive.gear.input_inertia + taken.given[INERTIA] / drive.gear.kinematics.ratio**2
-    off = (abs(shown - given) if taken.motor_known else max(given - shown, 0.0)) / given
+    stated = drive.motor.inertia + drive.gear.input_inertia + taken.given[LOAD_INERTIA] / drive.gear.kinematics.ratio**2
+    off = (abs(shown - stated) if taken.motor_known else max(stated - shown, 0.0)) / stated
     yield Check(
         "given inertia of the load", name, off, MAX_OFF_INERTIA, "1", off > MAX_OFF_INERTIA,
         f"the log shows a total inertia of {shown:.3g} kg·m² at the input, but that of the load as it was given makes "
-        f"{given:.3g} with motor and gear",
+        f"{stated:.3g} with motor and gear",
         "see whether load_inertia, motor_inertia, ratio and torque constant are right",
     )  # fmt: skip
 
@@ -354,10 +363,10 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
     rotating: Any = drive.motor
     squared = drive.gear.kinematics.ratio**2
     independent = {  # parts of the torque that do not grow with the constant
-        INERTIA: (drive.motor.inertia + drive.gear.input_inertia) * squared,
-        MOTOR: drive.gear.input_inertia + taken.given.get(INERTIA, 0.0) / squared,
+        LOAD_INERTIA: (drive.motor.inertia + drive.gear.input_inertia) * squared,
+        MOTOR_INERTIA: drive.gear.input_inertia + taken.given.get(LOAD_INERTIA, 0.0) / squared,
     }
-    rotors = {INERTIA: taken.rotor, MOTOR: taken.rotor / squared}
+    rotors = {LOAD_INERTIA: taken.rotor, MOTOR_INERTIA: taken.rotor / squared}
     induced = {}
     if taken.log.effort == "voltage":
         induced["gear.friction_input.viscous"] = rotating.torque_constant * rotating.back_emf / rotating.resistance
@@ -370,7 +379,7 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
         path = plain(estimate.path)
-        if best.model.one_speed and path in (COULOMB, VISCOUS):
+        if best.model.one_speed and path in (COULOMB_PATH, VISCOUS_PATH):
             continue
         law = encoder if path == "load.gravity_phase" else ""
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
@@ -378,32 +387,32 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
         sigma = float(np.linalg.norm(own))
         if path == "load.gravity_torque" and not best.log.regressors:
             sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
-        found = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
+        number = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(path, 0.0)
-        found = found.resting_on(taken.relative, offset + induced.get(path, 0.0))
-        found = found.resting_on(taken.of_resistance, offset)
-        found = found.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
+        number = number.resting_on(taken.relative, offset + induced.get(path, 0.0))
+        number = number.resting_on(taken.of_resistance, offset)
+        number = number.sharing(rotors.get(path, abs(turned) * taken.rotor / squared))
         if not taken.has_friction and path.startswith("gear.friction_"):
-            found = replace(found, why=BEHIND_GEAR)
+            number = replace(number, why=BEHIND_GEAR)
         elif path in DRY_TORQUES and not best.log.both_ways:
-            found = replace(found, sigma=np.inf, why=ONE_WAY)
-        elif path.startswith(DETENT) and is_one_wave(best.log):
-            found = replace(found, why=_one_wave(found, best), in_combination=True)
-        elif path.startswith(DEPTH) and best.model.one_speed:
+            number = replace(number, sigma=np.inf, why=ONE_WAY)
+        elif path.startswith(DETENT_PATHS) and is_one_wave(best.log):
+            number = replace(number, why=_one_wave(number, best), in_combination=True)
+        elif path.startswith(DEPTH_PATHS) and best.model.one_speed:
             share = prior_of_viscous(best.model.law, best.model.one_speed)[1] * best.model.one_speed / best.model.law.coulomb
-            found = replace(found, sigma=float(np.hypot(sigma, share * found.value)), why=DEPTH_BY_SET, in_combination=True)
-        elif is_uncertain(found.value, abs(turned) * unknown):
-            found = replace(found, why=OF_ROTOR)
-        elif not found.is_phase:
-            found = found.unless_uncertain()
+            number = replace(number, sigma=float(np.hypot(sigma, share * number.value)), why=DEPTH_BY_SET, in_combination=True)
+        elif is_uncertain(number.value, abs(turned) * unknown):
+            number = replace(number, why=UNKNOWN_ROTOR)
+        elif not number.is_phase:
+            number = number.unless_uncertain()
         elif path != "load.gravity_phase":
-            found = replace(found, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
+            number = replace(number, why="its wave is too small" if sigma > MAX_SIGMA_OF_PHASE else "")
         elif is_uncertain(*gravity) or sigma > MAX_SIGMA_OF_PHASE:
-            found = replace(found, why="the log determines no gravity")
-        yield found.in_current() if in_current else found
+            number = replace(number, why="the log determines no gravity")
+        yield number.in_current() if in_current else number
     for each in _at_one_speed(best, spread, apart) if best.model.one_speed else ():
-        found = each.resting_on(taken.relative)
-        yield found.in_current() if in_current else found
+        number = each.resting_on(taken.relative)
+        yield number.in_current() if in_current else number
 
 
 def _one_wave(detent: FileEstimate, best: MotionCandidate) -> str:
@@ -424,19 +433,46 @@ def _at_one_speed(best: MotionCandidate, spread: Mapping[str, float], apart: Map
         spread, apart: standard deviations by blocks of the record, and by models that predict as well, by path
     """
     speed, law, fitted = best.model.one_speed, sliding(best.fit.parts[0].model), best.fit
-    weights = np.array([{COULOMB: 1.0, VISCOUS: speed}.get(plain(each.path), 0.0) for each in fitted.estimates])
+    weights = np.array([{COULOMB_PATH: 1.0, VISCOUS_PATH: speed}.get(plain(each.path), 0.0) for each in fitted.estimates])
     acting = np.flatnonzero(weights)
     variance = float(weights[acting] @ fitted.covariance[np.ix_(acting, acting)] @ weights[acting])
-    own = max(float(np.sqrt(max(variance, 0.0))), spread[STEADY])
-    at_speed = friction_at(speed, float(law.coulomb + speed * law.viscous), float(np.hypot(own, apart[STEADY])))
+    own = max(float(np.sqrt(max(variance, 0.0))), spread[STEADY_FRICTION])
+    at_speed = friction_at(speed, float(law.coulomb + speed * law.viscous), float(np.hypot(own, apart[STEADY_FRICTION])))
     if not best.log.both_ways:
         at_speed = replace(at_speed, sigma=np.inf, why=ONE_WAY)
     yield at_speed
-    both = DeterminedSum((COULOMB, VISCOUS), (1.0, speed), at_speed.value, at_speed.sigma, "N.m")
+    both = DeterminedSum((COULOMB_PATH, VISCOUS_PATH), (1.0, speed), at_speed.value, at_speed.sigma, "N.m")
     why = at_speed.why or (
         f"determined together, at the one speed of the record: {both}; the split is that of the start set within its spread"
     )
     together, (_, split) = not at_speed.why, prior_of_viscous(law, speed)
     coulomb = float(np.hypot(at_speed.sigma, split * speed))
-    yield FileEstimate(COULOMB, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
-    yield FileEstimate(VISCOUS, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
+    yield FileEstimate(COULOMB_PATH, "N.m", float(law.coulomb), coulomb, "", why, in_combination=together)
+    yield FileEstimate(VISCOUS_PATH, "N.m.s/rad", float(law.viscous), split, "", why, in_combination=together)
+
+
+def picture_of_friction(fit: Fit, unit: str) -> Picture:
+    """Return the picture of friction over the speed of a log along its motion, means of what is left added to its law.
+
+    Args:
+        fit: of the log
+        unit: of the friction, N.m, or A if the torque constant is not known
+    """
+    part = fit.parts[0]
+    log, drive = part.experiment, part.model
+    assert isinstance(log, MotionLog)
+    rows = log.motion.rows
+    speed, left = log.motion.speed[rows], part.residuals[0] / per_torque(drive, log.effort)
+    load = np.abs(transmitted_torque(log, drive)[rows]) / abs(drive.gear.kinematics.ratio)
+    bins = [
+        each
+        for way in (-1.0, 1.0)
+        for each in np.array_split(np.flatnonzero(way * speed > 0.0)[np.argsort(speed[way * speed > 0.0])], SPEED_BINS)
+        if len(each)
+    ]
+    means = np.array([[float(np.mean(series[each])) for series in (speed, left, load)] for each in bins]).reshape(-1, 3).T
+    table = FrictionTable(np.abs(means[0]), np.zeros(len(bins)), load=means[2])
+    friction = np.sign(means[0]) * table.predict(drive.gear, [], np.zeros(0))[0][0]
+    columns = {"speed": means[0], "friction": friction + means[1], "modelled": friction}
+    units = {"speed": "rad/s", "friction": unit, "modelled": unit}
+    return Picture(Recording(columns, units), "table", "friction, at the input", "friction over speed")

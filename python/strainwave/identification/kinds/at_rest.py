@@ -10,23 +10,20 @@ import numpy as np
 from strainwave import friction
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.checks.sizes import MIN_RATIO
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Quantity
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed, needed_effort
+from strainwave.identification.results.file_result import BREAKAWAY_PATH, COULOMB_PATH, FileEstimate
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.parameters import plain
 
-SLIDING = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
-BRISTLES = (friction.LuGre, friction.MaxwellSlipFriction)
-WITH_BREAKAWAY = (*SLIDING, friction.LuGre)  # laws with a torque of breakaway
-BREAKAWAY = "gear.friction_input.breakaway"
-COULOMB = "gear.friction_input.coulomb"
-MIN_RATIO = 2.0  # of a gear
+SLIDING_LAWS = (friction.Coulomb, friction.Stribeck)  # laws whose numbers a law with bristles has, too
+BRISTLE_LAWS = (friction.LuGre, friction.MaxwellSlipFriction)
+WITH_BREAKAWAY = (*SLIDING_LAWS, friction.LuGre)  # laws with a torque of breakaway
 MAX_PRESLIDING = 0.05  # rad of the input: what moves to and fro by less has not slid far, and hardly twists the gear
 
 
@@ -67,8 +64,8 @@ def angle_and_effort(columns: Sequence[Column], mapping: FileMapping) -> tuple[C
 
 def _one(columns: Sequence[Column], quantity: Quantity) -> Column | None:
     """Return the column of a quantity, of the input if there are several; None if it is not one."""
-    found = measured(columns, quantity)
-    own = [column for column in found if column.channel.side == "input"] or found
+    candidates = measured(columns, quantity)
+    own = [column for column in candidates if column.channel.side == "input"] or candidates
     return own[0] if len(own) == 1 else None
 
 
@@ -85,8 +82,8 @@ def estimate_of(each: Estimate, path: str, law: str, uncertain: float, why: str)
         uncertain: standard deviation of the torque constant over its value [1]
         why: the reason why the file does not determine it; empty if it does
     """
-    found = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
-    return found.sharing(uncertain * abs(each.value)).unless_uncertain()
+    estimate = FileEstimate(path, each.unit, each.value, each.sigma, law, why)
+    return estimate.sharing(uncertain * abs(each.value)).unless_uncertain()
 
 
 def with_breakaway(known: GearSoFar, estimate: FileEstimate, name: str) -> tuple[GearSoFar, tuple[str, ...]]:
@@ -98,13 +95,13 @@ def with_breakaway(known: GearSoFar, estimate: FileEstimate, name: str) -> tuple
         name: of the file
     """
     law = known.sliding()
-    is_known = any(plain(path) == BREAKAWAY for path in known.determined_by)
+    is_known = any(plain(path) == BREAKAWAY_PATH for path in known.determined_by)
     if not isinstance(law, WITH_BREAKAWAY) or is_known or estimate.why:
         return known, ()
     if estimate.value >= law.coulomb:
         return known.with_sliding(law.replace(breakaway=estimate.value), {"breakaway": estimate.sigma}, name), ()
     below = f"it lies below the Coulomb torque of the gear, {law.coulomb:.3g} N·m"
-    if any(plain(path) == COULOMB for path in known.determined_by):
+    if any(plain(path) == COULOMB_PATH for path in known.determined_by):
         return known, (f"{below}, which keeps its breakaway torque",)
     lower = law.replace(coulomb=estimate.value, breakaway=estimate.value)
     return known.with_sliding(lower, {"breakaway": estimate.sigma}, name), (

@@ -11,20 +11,28 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, hysteresis, loads, stiffness, structure
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.confirmed import spread_by_blocks
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
+from strainwave.identification.candidates.motion_candidate import MotionCandidate, spread_by_blocks
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
+from strainwave.identification.experiments.drive_log import DrivenLog
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import curves_of_shafts, picture_of_twist
-from strainwave.identification.results.file_result import MAX_RELATIVE_SIGMA, FileEstimate, FileResult, Picture, is_uncertain
-from strainwave.identification.results.gear_so_far import GearSoFar, compared_path, is_of
-from strainwave.identification.results.motor_inertia import MOTOR
+from strainwave.identification.results.file_result import (
+    GRAVITY_PATH,
+    LOAD_INERTIA,
+    MAX_RELATIVE_SIGMA,
+    MOTOR_INERTIA,
+    Check,
+    FileEstimate,
+    FileResult,
+    is_uncertain,
+)
+from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar, compared_path, is_of
+from strainwave.identification.results.pictures import Picture
 from strainwave.orders.two_encoders import TransmissionError
 from strainwave.statistics.residuals import correlation_length
 
@@ -33,12 +41,11 @@ Array = NDArray[np.float64]
 SIGNIFICANT_DELAY_SIGMA = 2.5  # standard deviations, beyond which a delay is there
 MAX_RELATIVE_TO_INERTIA = 3.0  # standard deviation of gravity over that of the inertia: beyond, torques count from inertia
 MAX_CORRELATION_LENGTH = 3.0  # samples, of noise (assumed)
-PARTS_OF_TORQUE = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
+TORQUE_PARTS = ("stiffness", "hysteresis", "damping")  # of the gear; torques in A do not determine them
 MAY_BE_ABSENT = ("gear.hysteresis.", "gear.damping")  # parts that a gear need not have
 DAMPING_RATIO_SIGMA = 2e-3  # of critical damping (assumed): noise of the input that passes its filter looks like damping
 MIN_PART_SIGMA = 3.0  # standard deviations, beyond which such a part is there
-BREAKAWAY, STIFFNESS = "gear.hysteresis.breakaway", "gear.stiffness."
-GRAVITY, INERTIA = "load.gravity_torque", "load.inertia"
+ELEMENT_TORQUES, STIFFNESS_PATHS = "gear.hysteresis.breakaway", "gear.stiffness."
 START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
 
@@ -59,24 +66,30 @@ def between_encoders(
         _check(taken.log, drive, errors)
         scale = _scale(estimates, taken, drive)
         drive = drive.replace(gear=drive.gear.replace(stiffness=known.gear_set.gear.stiffness))
-        found = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, _law(errors, drive))
+        turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi  # counted the other way round
+        law = errors.law.replace(phase=[phase + turned for phase in errors.law.phase])
+        elastic = fit_elastic(_sense(taken.recording, errors, drive), taken.log, drive, scale.path, law)
     except (ValueError, FloatingPointError) as error:
         return FileResult(source, remarks=(f"stiffness and hysteresis are not determined: {error}",)), known
-    of_gear = tuple(_estimates(found, scale, known, taken.in_current))
-    has_stiffness = any(each.path.startswith(STIFFNESS) and not each.why for each in of_gear)
+    of_gear = tuple(_estimates(elastic, scale, known, taken.in_current))
+    has_stiffness = any(each.path.startswith(STIFFNESS_PATHS) and not each.why for each in of_gear)
     result = FileResult(
-        source, model=found.name, estimates=(*of_gear, *_motor(found, of_gear, taken, best, errors)),
-        remarks=tuple(_remarks(found, scale, taken)),
-        checks=tuple(_inertias(found, scale, estimates, taken, source)),
+        source, model=elastic.name, estimates=(*of_gear, *_motor(elastic, of_gear, taken, best, errors)),
+        remarks=tuple(_remarks(elastic, scale, taken)),
+        checks=tuple(_inertias(elastic, scale, estimates, taken, source)),
         pictures=(
-            *([picture_of_twist(found.fit)] if has_stiffness else []),
-            Picture(curves_of_shafts(found.fit), title="between the shafts", model=found.name),
+            *([picture_of_twist(elastic.fit)] if has_stiffness else []),
+            Picture(curves_of_shafts(elastic.fit), title="between the shafts", model=elastic.name),
         ),
-        between=found.fit,
+        between=elastic.fit,
     )  # fmt: skip
-    parts = [*(() if taken.in_current else PARTS_OF_TORQUE), *(["kinematic_error"] if _has_kinematic_error(found) else [])]
-    finer = {"hysteresis"} if _is_finer(found, of_gear, known) else set[str]()
-    return result, _with_parts(known, found, [part for part in parts if part not in known.determined - finer], result)
+    has_waves = any(
+        each.path.startswith(ERROR_AMPLITUDE) and not is_uncertain(each.value, float(sigma))
+        for each, sigma in zip(elastic.fit.estimates, elastic.sigmas, strict=True)
+    )
+    parts = [*(() if taken.in_current else TORQUE_PARTS), *(["kinematic_error"] if has_waves else [])]
+    finer = {"hysteresis"} if _is_finer(elastic, of_gear, known) else set[str]()
+    return result, _with_parts(known, elastic, [part for part in parts if part not in known.determined - finer], result)
 
 
 def _is_finer(found: ElasticCandidate, estimates: Sequence[FileEstimate], known: GearSoFar) -> bool:
@@ -89,8 +102,8 @@ def _is_finer(found: ElasticCandidate, estimates: Sequence[FileEstimate], known:
         or any(each.why for each in own)
     ):
         return False
-    sigmas = [each.sigma for each in own if each.path.startswith(BREAKAWAY)]
-    sigmas += [entry.uncertainty or 0.0 for path, entry in known.gear_set.sources.items() if path.startswith(BREAKAWAY)]
+    sigmas = [each.sigma for each in own if each.path.startswith(ELEMENT_TORQUES)]
+    sigmas += [entry.uncertainty or 0.0 for path, entry in known.gear_set.sources.items() if path.startswith(ELEMENT_TORQUES)]
     apart = abs(float(np.sum(law.breakaway)) - float(np.sum(before.breakaway)))
     return len(law.breakaway) > len(before.breakaway) and apart < MIN_PART_SIGMA * float(np.linalg.norm(sigmas))
 
@@ -138,17 +151,19 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
     Raises:
         ValueError: the log determines neither
     """
-    if INERTIA in taken.given:
-        return _Scale(INERTIA, 0.0, 0.0)
-    gravity, inertia = (each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY, INERTIA))
-    by_gravity = [] if gravity is None else [_Scale(GRAVITY, gravity.sigma / gravity.value, taken.relative)]
+    if LOAD_INERTIA in taken.given:
+        return _Scale(LOAD_INERTIA, 0.0, 0.0)
+    gravity, inertia = (
+        each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY_PATH, LOAD_INERTIA)
+    )
+    by_gravity = [] if gravity is None else [_Scale(GRAVITY_PATH, gravity.sigma / gravity.value, taken.relative)]
     by_inertia = []
     if inertia is not None and taken.motor_known:
         rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
         common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
-        by_inertia = [_Scale(INERTIA, inertia.sigma / inertia.value, common)]
-    known = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
-    if not known:
+        by_inertia = [_Scale(LOAD_INERTIA, inertia.sigma / inertia.value, common)]
+    usable = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
+    if not usable:
         missing = "is not known: give --constant motor_inertia=NUMBER"
         if taken.motor_known:
             missing = f"is not known well enough compared with that of the load: ± {taken.rotor:.2g} kg·m² at the output"
@@ -156,7 +171,7 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
             f"no torque at the output is known to count from: the log determines no gravity, and the inertia of the "
             f"motor {missing}"
         )
-    return known[0] if len(known) == 1 or known[0].relative < MAX_RELATIVE_TO_INERTIA * known[1].relative else known[1]
+    return usable[0] if len(usable) == 1 or usable[0].relative < MAX_RELATIVE_TO_INERTIA * usable[1].relative else usable[1]
 
 
 def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Recording:
@@ -164,13 +179,6 @@ def _sense(recording: Recording, errors: TransmissionError, drive: Drive) -> Rec
     if errors.ratio.used * drive.gear.kinematics.ratio > 0.0:
         return recording
     return recording.with_column("output_angle", -recording["output_angle"], recording.unit("output_angle"))
-
-
-def _law(errors: TransmissionError, drive: Drive) -> Any:
-    """Return the kinematic error of two encoders; with the output counted the other way round it has the other sign."""
-    law = errors.law
-    turned = 0.0 if errors.ratio.used * drive.gear.kinematics.ratio > 0.0 else np.pi
-    return law.replace(phase=[phase + turned for phase in law.phase])
 
 
 # ---- Estimates and remarks -------------------------------------------------------------------------------------------
@@ -210,8 +218,8 @@ def _motor(
 
     The output moves as its encoder measured it. That of a rigid gear lacks what the spring amplifies.
     """
-    load = next((each for each in of_gear if each.path == INERTIA and not each.why), None)
-    if taken.motor_known or (load is None and INERTIA not in taken.given):
+    load = next((each for each in of_gear if each.path == LOAD_INERTIA and not each.why), None)
+    if taken.motor_known or (load is None and LOAD_INERTIA not in taken.given):
         return
     drive, motion = best.fit.parts[0].model, best.log.motion
     carried: Any = found.drive.load
@@ -225,42 +233,30 @@ def _motor(
     model = replace(
         best.model, log=replace(best.log, extra=best.log.extra + torque),
         drive=drive.replace(load=loads.Inertia(inertia=MIN_INERTIA), motor=drive.motor.replace(inertia=START_MOTOR)),
-        free=(MOTOR, *(path for path in best.model.free if not path.startswith(("load.", MOTOR)))),
+        free=(MOTOR_INERTIA, *(path for path in best.model.free if not path.startswith(("load.", MOTOR_INERTIA)))),
     )  # fmt: skip
     candidate = replace(best, model=model, priors={})
-    (own,) = (each for each in candidate.fit.estimates if each.path == MOTOR)
+    (own,) = (each for each in candidate.fit.estimates if each.path == MOTOR_INERTIA)
     of_load = 0.0 if load is None else load.own / ratio**2
-    sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR]), of_load))
-    estimate = FileEstimate(MOTOR, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
+    sigma = float(np.hypot(max(own.sigma, spread_by_blocks(candidate)[MOTOR_INERTIA]), of_load))
+    estimate = FileEstimate(MOTOR_INERTIA, own.unit, own.value, sigma, "").resting_on(taken.relative, input_inertia)
     of_recorder = RECORDER_BIAS * (own.value + input_inertia) if taken.log.effort == "current" else 0.0
     estimate = estimate.sharing(float(np.hypot(taken.rotor / ratio**2, of_recorder))).unless_uncertain()
     yield estimate.in_current() if taken.in_current else estimate
 
 
-def _has_kinematic_error(found: ElasticCandidate) -> bool:
-    """True if an order is determined; without any, the gear keeps the kinematic error of the start set."""
-    waves = zip(found.fit.estimates, found.sigmas, strict=True)
-    of_waves = [(each.value, float(sigma)) for each, sigma in waves if each.path.startswith("gear.kinematic_error.amplitude")]
-    return any(not is_uncertain(value, sigma) for value, sigma in of_waves)
-
-
 def _path(path: str, found: ElasticCandidate, law: Any) -> str:
     """Return the path by which a number is compared with those of other files."""
-    if path == "gear.stiffness.k" and _first_segment(found, law):
-        return "gear.stiffness.k1"
+    is_linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
+    if path == "gear.stiffness.k" and is_linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1:
+        return "gear.stiffness.k1"  # the first of three segments, of which the log has reached no other
     return compared_path(path, found.drive.gear)
-
-
-def _first_segment(found: ElasticCandidate, law: Any) -> bool:
-    """True if a linear spring is the first of three segments, of which the log has reached no other."""
-    linear = isinstance(found.drive.gear.stiffness, stiffness.Linear)
-    return linear and isinstance(law, stiffness.ThreeSegment) and found.reach < law.t1
 
 
 def _law_of(path: str, found: ElasticCandidate) -> str:
     part, gear = path.removeprefix("gear.").partition(".")[0], found.drive.gear
     if part == "hysteresis":
-        count = sum(each.path.startswith(BREAKAWAY) for each in found.fit.estimates)
+        count = sum(each.path.startswith(ELEMENT_TORQUES) for each in found.fit.estimates)
         return f"of {count} element{'s' if count > 1 else ''}"  # elements of different sets have nothing in common
     if path == "gear.stiffness.k1":
         return "three_segment"
@@ -275,11 +271,11 @@ def _inertias(
     The first is taken: it needs neither the inertia of the motor nor a current that is a mean. If both count from gravity, a
     wrong torque constant changes both alike but for the rotor.
     """
-    if scale.path != GRAVITY or INERTIA not in by_motor or not taken.motor_known:
+    if scale.path != GRAVITY_PATH or LOAD_INERTIA not in by_motor or not taken.motor_known:
         return
     places = {each.path: place for place, each in enumerate(found.fit.estimates)}
-    own, sigma = found.fit.estimates[places[INERTIA]].value, float(found.sigmas[places[INERTIA]])
-    drive, rigid = taken.drive, by_motor[INERTIA]
+    own, sigma = found.fit.estimates[places[LOAD_INERTIA]].value, float(found.sigmas[places[LOAD_INERTIA]])
+    drive, rigid = taken.drive, by_motor[LOAD_INERTIA]
     rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
     of_torque = [rigid.sigma, taken.rotor, taken.relative * rotor]
     by_torque = rigid.value, float(np.linalg.norm(of_torque))
@@ -290,7 +286,7 @@ def _inertias(
 def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iterator[str]:
     estimates = {each.path: (each, float(sigma)) for each, sigma in zip(found.fit.estimates, found.sigmas, strict=True)}
     torque = "A" if taken.in_current else "N·m"
-    of = "gravity" if scale.path == GRAVITY else "inertia of the load"
+    of = "gravity" if scale.path == GRAVITY_PATH else "inertia of the load"
     yield (
         f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
         f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not determined. Torques count from "
@@ -341,3 +337,33 @@ def _spring(found: Any, before: Any, reach: float) -> Any:
     if isinstance(found, stiffness.ThreeSegment) and found.t2 > reach:
         return found.replace(k3=before.k3, t2=max(before.t2, reach))
     return found
+
+
+def picture_of_twist(fit: Fit) -> Picture:
+    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits."""
+    part = fit.parts[0]
+    log, gear = part.experiment, part.model.gear
+    assert isinstance(log, DrivenLog)
+    turned = log.angle / gear.kinematics.ratio - gear.kinematic_error.error(log.angle)
+    measured, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {
+        "torque": log.gear_torque(part.model),
+        "twist": measured - modelled.mean(),
+        "modelled": modelled - modelled.mean(),
+    }
+    units = {"torque": "N.m", "twist": "rad", "modelled": "rad"}
+    return Picture(Recording(columns, units), "loop", "twist, at the output", "twist over torque")
+
+
+def curves_of_shafts(fit: Fit) -> Recording:
+    """Return the angle between the shafts in a log and its prediction along the motion of the input.
+
+    Returns:
+        time; `transmission_error`, input over ratio less output, from a mean of zero; and `modelled`
+    """
+    part = fit.parts[0]
+    log: Any = part.experiment
+    turned = log.angle / part.model.gear.kinematics.ratio
+    error, modelled = turned - log.measured[0], turned - part.predicted[0]
+    columns = {"time": log.time, "transmission_error": error - error.mean(), "modelled": modelled - error.mean()}
+    return Recording(columns, dict.fromkeys(columns, "rad") | {"time": "s"})

@@ -8,13 +8,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque
+from strainwave.identification.candidates.presliding import BreakawayTorque, breakaway_torque, breakaways
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import breakaways
-from strainwave.identification.fitting.estimate import Estimate
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.at_rest import (
-    BREAKAWAY,
     AtRest,
     angle_and_effort,
     at_input,
@@ -22,24 +20,22 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
     with_breakaway,
 )
-from strainwave.identification.reading.angles import jumps
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import MAX_SPEED_AT_REST, runs_of
+from strainwave.identification.reading.motion import MAX_SPEED_AT_REST, jumps, runs_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import first
-from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.reading.roles import Column, first
+from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.residuals import rms
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 
-MIN_LOAD = 0.1  # of the largest torque
+MIN_LOAD_SHARE = 0.1  # of the largest torque
 MIN_TIME_AT_REST = 0.5  # of the time under load, while ramps rise
 MIN_CORRELATION = 0.9  # of a ramp with time
 PARTS_OF_RECORD = 500  # over which motion is counted
-MIN_ROWS, MIN_ROWS_OF_RAMP = 100, 10
+MIN_RECORD_ROWS, MIN_ROWS_OF_RAMP = 100, 10
 
 
 class Breakaway(AtRest):
@@ -68,17 +64,17 @@ class Breakaway(AtRest):
         name = file.path.name
         recording, uncertain = at_input(file, known)
         ramps = breakaways(recording)
-        found = breakaway_torque(ramps)
-        ways = (found.reverse, found.forward)
+        torque = breakaway_torque(ramps)
+        ways = (torque.reverse, torque.forward)
         sides = [each for each in ways if each is not None]
         both = _mean(sides)
         off = [abs(ramp.torque) - each.value for ramp in ramps if (each := ways[ramp.torque > 0.0]) is not None]
         left = Left(rms(np.array(off)), both.value, "N.m", MAX_SHARE_OF_TORQUE)
         whole = error_left({"the torque of breakaway": left}, name)
         few = "one ramp shows no scatter" if len(ramps) <= len(sides) else ""
-        estimates = only_if_explained((estimate_of(both, BREAKAWAY, "", uncertain, few),), whole)
+        estimates = only_if_explained((estimate_of(both, BREAKAWAY_PATH, "", uncertain, few),), whole)
         after, below = with_breakaway(known, estimates[0], name)
-        remarks = (*file.remarks, *_remarks(found, len(ramps)), *below)
+        remarks = (*file.remarks, *_remarks(torque, len(ramps)), *below)
         checks = (*friction_at_rest(both.value, known.initial.gear, name), whole)
         return FileResult(name, file, "breakaway of each ramp", estimates, remarks, checks), after
 
@@ -107,13 +103,13 @@ def _mean(sides: list[Estimate]) -> Estimate:
 
 def _ramps(time: Array, angle: Array, effort: Array) -> bool:
     """True if the torque rises while the shaft rests, most of the time under load."""
-    if len(time) < MIN_ROWS or not np.isfinite(time + angle + effort).all():
+    if len(time) < MIN_RECORD_ROWS or not np.isfinite(time + angle + effort).all():
         return False
     apart = max(len(time) // PARTS_OF_RECORD, 1)
     for row in jumps(angle, time):
         angle = np.concatenate([angle[:row], angle[row:] - (angle[row] - angle[row - 1])])
     moved, size = np.abs(angle[apart:] - angle[:-apart]), np.abs(effort[apart:])
-    loaded, resting = size > MIN_LOAD * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
+    loaded, resting = size > MIN_LOAD_SHARE * size.max(), moved <= MAX_SPEED_AT_REST * moved.max()
     if not moved.max() > 0.0:
         return False
     ramps = [size[rows] for rows in runs_of(loaded & resting, MIN_ROWS_OF_RAMP)]

@@ -11,13 +11,12 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.kinds.friction_table import fit_table
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed
 from strainwave.identification.results.file_result import FileResult
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, rotor_sigma
 from strainwave.questions import Answer, QuestionError
 from strainwave.statistics.linear_fit import solved
 
@@ -28,7 +27,7 @@ MIN_PARTS, MIN_ROWS_OF_PART = 6, 4
 MIN_SPEED = 0.02  # of the first speed: below, the shaft comes to rest
 MAX_RISE = 0.1  # of the first speed, by which it may rise after its largest: a shaft without a motor only slows down
 MIN_FALL = 0.5  # of the largest speed
-OF_ROTOR = "inertia of the rotor and what is fixed to it [kg.m2], without the wave generator"
+ROTOR_ASKED = "inertia of the rotor and what is fixed to it [kg.m2], without the wave generator"
 
 
 class CoastDown(Kind):
@@ -68,14 +67,15 @@ class CoastDown(Kind):
             question = (
                 f"a run-down determines friction over inertia alone: Coulomb {dry:.4g} N·m and viscous {viscous:.4g} N·m·s/rad"
             )
-            is_known = Answer("the inertia is known", {"constants": {"motor_inertia": 1e-4}}, {"motor_inertia": OF_ROTOR})
+            is_known = Answer("the inertia is known", {"constants": {"motor_inertia": 1e-4}}, {"motor_inertia": ROTOR_ASKED})
             raise QuestionError(f"{question} for each kg·m² that turns", [is_known])
         load = file.constants.get("load_inertia", 0.0) / gear.kinematics.ratio**2
         inertia = (file.constants["motor_inertia"] + gear.input_inertia + load) * squared
         table = Recording({"speed": speed, "torque": -inertia * slowing}, {"speed": "rad/s", "torque": "N.m"})
         turns = f"{inertia:.4g} kg·m² turn{' at the output' if file.side == 'output' else ''}: friction scales with them"
         remarks = (*file.remarks, f"motor_inertia with the gear's own, and load_inertia, {turns}")
-        return fit_table(replace(file, remarks=remarks), table, 0.0, known)
+        uncertain = rotor_sigma(file, known.gear_set) * squared / inertia  # of the wave generator: what is given is exact
+        return fit_table(replace(file, remarks=remarks), table, uncertain, known)
 
 
 def _falls(speed: Array) -> bool:

@@ -14,7 +14,6 @@ from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
-from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import (
     friction_of_table,
     hints_of_levels,
@@ -22,32 +21,42 @@ from strainwave.identification.checks.sizes import (
     levels_of_table,
     opposes_motion,
 )
-from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.kinds.kind import Kind, Ranked
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
-from strainwave.identification.reading.column import Column
+from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motions import stretches
+from strainwave.identification.reading.motion import stretches
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, needed, needed_effort
-from strainwave.identification.reading.sides import pair, side_of_table
-from strainwave.identification.results.changes import changes_of, friction_directions, slopes_by_numbers
-from strainwave.identification.results.curves import curves_of
-from strainwave.identification.results.determined import (
+from strainwave.identification.reading.roles import (
+    Column,
+    ColumnRoles,
+    first,
+    measured,
+    needed,
+    needed_effort,
+    pair,
+    side_of_table,
+)
+from strainwave.identification.results.file_result import FileResult, HeldOut
+from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
+from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before
+from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.prediction import (
+    Prediction,
+    changes_of,
+    friction_directions,
+    judged,
+    model_error,
+    slopes_by_numbers,
+)
+from strainwave.identification.results.steady_friction import (
     AT_SPEEDS,
     MIN_SPEEDS,
     best_known_friction,
     different_speeds,
     friction_at_speeds,
 )
-from strainwave.identification.results.file_result import FileResult, Picture
-from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
-from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import JudgedFit
-from strainwave.identification.results.prediction import Prediction, judged, model_error
-from strainwave.identification.results.undetermined import with_friction_at, with_set_before
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import solved
@@ -55,11 +64,11 @@ from strainwave.statistics.residuals import correlation_length, rms
 
 Array = NDArray[np.float64]
 MAX_ROWS = 500  # of a table that was measured point by point
-MIN_ROWS = 4  # speeds of a table
+MIN_STRETCHES = 4  # speeds of a table
 MIN_INDEPENDENCE = 1e-3  # smallest singular value of terms of size 1 that are fitted together
-SPEEDS = ("rad/s", "rpm", "rev/s")  # of tables of friction
-UNITS = {"speed": "rad/s", "torque": "N.m"}
-DRY = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
+SPEED_UNITS = ("rad/s", "rpm", "rev/s")  # of tables of friction
+TABLE_UNITS = {"speed": "rad/s", "torque": "N.m"}
+DRY_TORQUES = (".coulomb", ".breakaway")  # torques that a loss under a constant load adds to
 MIN_FACTOR_BY_LAWS = 1.2  # standard deviation over that within one law, from which on other laws are worth a word
 
 
@@ -76,7 +85,7 @@ class SteadyFriction(Kind):
         """
         if not (speeds := measured(columns, "speed")) or not measured(columns, "torque", "current"):
             return False
-        if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_ROWS:
+        if (rows := len(speeds[0].si)) > MAX_ROWS and len(stretches(speeds[0].si)) < MIN_STRETCHES:
             ways = [LOG_AT_RATE, Answer("a table of friction", {"kind": "friction"})]
             raise QuestionError(f"it has {rows} rows of speed and torque without time", ways)
         return True
@@ -87,7 +96,7 @@ class SteadyFriction(Kind):
         columns, load, loaded = _with_load(columns, speed)
         effort, torque = needed_effort(columns, self.title)
         side, why_side = side_of_table(speed, torque, mapping.side)
-        found = {"speed": speed, effort: torque, **load, **first(columns, "temperature")}
+        by_channel = {"speed": speed, effort: torque, **load, **first(columns, "temperature")}
         rows, remarks = len(speed.si), tuple[str, ...]()
         order = f", {rows} rows in {'no order of time' if (np.diff(speed.si) < 0.0).any() else 'the order of speed'}"
         if rows > MAX_ROWS:
@@ -96,11 +105,11 @@ class SteadyFriction(Kind):
                 raise QuestionError(f"{none}: give a row for each speed, or its time, as a log")
             steady = sum(part.stop - part.start for part in parts)
             remarks = (f"{steady} of its {rows} rows are steady; the means of {len(parts)} stretches at one speed are taken",)
-            means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in found.items()}
-            found = {name: replace(column, si=means[name]) for name, column in found.items()}
+            means = {name: np.array([column.si[part].mean() for part in parts]) for name, column in by_channel.items()}
+            by_channel = {name: replace(column, si=means[name]) for name, column in by_channel.items()}
             order = " at one speed after another"
         why = f"its columns are {pair(speed, torque)}{order}: {self.title}"
-        return ColumnRoles(self.name, found, side, (why, why_side, *loaded), remarks)
+        return ColumnRoles(self.name, by_channel, side, (why, why_side, *loaded), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the laws of steady friction that a table may show."""
@@ -116,25 +125,25 @@ class SteadyFriction(Kind):
         slopes, covariance = slopes_by_numbers(gear_set, gear, lambda other: _at(table, other), "gear.friction_")
         changes, explained = changes_of(left, directions, slopes, covariance, model_error(gear_set, file.kind, "torque"))
         curves = {"speed": table.speed, "torque": table.torque, "predicted": table.torque - left, "residual": left}
-        found = Prediction(
+        prediction = Prediction(
             file.path.name, gear_set.name, file.kind, "torque", "N.m", rms(left), float(np.std(table.torque)),
             samples=len(left), changes=changes, error_with_changes=rms(left - explained),
             curves=Recording(curves, dict.fromkeys(curves, "N.m") | {"speed": "rad/s"}), remarks=(*file.remarks, *remarks),
         )  # fmt: skip
-        return judged(found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
+        return judged(prediction, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes, covariance, slopes))))
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error where each speed is predicted from the others."""
         recording, _ = with_torque(file, known.gear_set)
         table = _table_of(recording, file.side, known.gear_set.gear)
-        found = fit_friction(table, known.gear_set.gear)
+        candidates = fit_friction(table, known.gear_set.gear)
         order = np.argsort(table.speed, kind="stable")
         return tuple(
             Ranked(
                 each.name, each.parameters, each.error, each.error_sigma, "N.m",
                 correlation_length(each.fit.residuals[0][order]), cost_of(each.law),
             )
-            for each in found
+            for each in candidates
         )  # fmt: skip
 
 
@@ -152,7 +161,7 @@ def _check_speed_unit(speed: Column) -> None:
     fastest = float(np.abs(speed.raw[np.isfinite(speed.raw)]).max(initial=0.0))
     ways = [
         Answer(f"{each}, {convert(fastest, each, 'rpm'):.0f} 1/min at most", {"units": {speed.label.name: each}})
-        for each in SPEEDS
+        for each in SPEED_UNITS
     ]
     raise QuestionError(f"the unit of {speed.name} is not stated, and a table of friction does not determine it", ways)
 
@@ -196,7 +205,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     Args:
         file: that it came from
         table: speed and torque, and what else friction may depend on
-        uncertain: standard deviation of the torque constant that its torques rest on, over its value [1]
+        uncertain: standard deviation of the torque constant or inertia that its torques rest on, over its value [1]
         known: before it
     """
     name, gear = file.path.name, known.gear_set.gear
@@ -275,7 +284,7 @@ def _shared(best: FrictionCandidate, table: FrictionTable) -> dict[str, str]:
     sums = (
         DeterminedSum((each.path, loss), (1.0, held), each.value + kept, each.sigma, each.unit)
         for each in best.fit.estimates
-        if each.path.endswith(DRY)
+        if each.path.endswith(DRY_TORQUES)
     )
     return {f"gear.{each.paths[0]}": each.with_others for each in sums}
 
@@ -297,4 +306,4 @@ def _remarks(recording: Recording, best: FrictionCandidate, table: FrictionTable
     yield from unused(recording, ("speed", "torque", "current", *CONDITIONS))
     if (left_out := int(np.sum(~best.fit.training))) > 0:
         yield f"{left_out} of {len(table.speed)} rows are outliers, and left out"
-    yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, UNITS))
+    yield from exceeded(start, Recording({"speed": table.speed, "torque": table.torque}, TABLE_UNITS))

@@ -1,20 +1,21 @@
-"""The common base of the kinds of measurement."""
+"""The common base of the kinds of measurement, remarks that they share, and the ranking of all models of a file."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
 
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.column import Column
+from strainwave.files.ratings import check_ratings
+from strainwave.files.recording import Recording
+from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles
+from strainwave.identification.reading.roles import Column, ColumnRoles
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
@@ -125,3 +126,53 @@ class Kind(ABC):
             ValueError: files of this kind are not predicted, or the saved gear lacks what a prediction needs
         """
         raise ValueError(f"it is {self.title}: {NOT_PREDICTED}")
+
+
+# ---- Remarks ---------------------------------------------------------------------------------------------------------
+
+
+def exceeded(start: GearSet, load: Recording) -> Iterator[str]:
+    """Yield the ratings of a gear that a measurement exceeded."""
+    yield from (f"beyond what the maker allows: {check}" for check in check_ratings(start, load) if check.exceeded)
+
+
+def thinned(samples: int, taken: int) -> Iterator[str]:
+    """Yield how many samples were compared, if these are not all."""
+    if samples > taken:
+        yield f"of its {samples} samples {taken} were compared"
+
+
+def unused(recording: Recording, used: Sequence[str]) -> Iterator[str]:
+    """Yield the columns that the fit does not use."""
+    if names := [name for name in recording.names if name not in used]:
+        yield f"not used: {', '.join(names)}"
+
+
+# ---- Ranking ---------------------------------------------------------------------------------------------------------
+
+
+def rank(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
+    """Return all models of a file, the one to take first: the simplest whose error is larger by no more than chance may make.
+
+    Args:
+        start: the set to start from
+        file: a table of friction, a torsion loop, a presliding loop, or a log
+
+    Raises:
+        ValueError: the file is none of these, or cannot be fitted
+    """
+    return kind_named(file.kind).rank(file.at_ratio(start.gear.kinematics.ratio), GearSoFar(start))
+
+
+def table_of(ranked: Sequence[Ranked]) -> list[str]:
+    """Return the lines of a table to print."""
+    width = max(len(each.name) for each in ranked)
+    unit = ranked[0].unit
+    head = f"{'model':{width}}  numbers  error held out [{unit}]  residuals together  cost [µs]"
+    return [head, *(_line(each, width) for each in ranked)]
+
+
+def _line(each: Ranked, width: int) -> str:
+    error = f"{each.error:.4g}" + (f" ± {each.standard_error:.2g}" if np.isfinite(each.standard_error) else "")
+    cost = f"{each.cost:.2g}" if np.isfinite(each.cost) else "-"
+    return f"{each.name:{width}}  {each.parameters:7}  {error:>22}  {each.correlation:18.3g}  {cost:>9}"

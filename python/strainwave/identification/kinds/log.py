@@ -6,26 +6,44 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.motion import fit_motion
-from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.kinds.along_motion import fit_along_motion
 from strainwave.identification.kinds.kind import Kind, Ranked
 from strainwave.identification.kinds.predicted_log import predict_log
 from strainwave.identification.kinds.prepared_log import log_of
-from strainwave.identification.kinds.shafts import put_sided
 from strainwave.identification.kinds.torsion_loop import is_loaded_spring, is_series_spring
 from strainwave.identification.kinds.warm_up import warmed, with_fall
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.reading.roles import (
+    MIN_FACTOR_OF_SIDES,
+    Column,
+    ColumnRoles,
+    channels,
+    commanded,
+    measured,
+    names_of,
+    put,
+    side_of_motion,
+    side_of_torque,
+    sides_of_angles,
+    sides_of_torques,
+)
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
+from strainwave.messages import as_option
 from strainwave.questions import Answer, QuestionError
 from strainwave.statistics.residuals import correlation_length
+
+Array = NDArray[np.float64]
+
+MAX_REFLECTED = 0.1  # relative difference of a motion of the input from that of the output, if it is divided by the ratio
+MAX_REFLECTED_RANGE = 2.0 * np.pi  # rad, rad/s: a motor that moves less, without an encoder of the joint, is counted there
 
 
 class Log(Kind):
@@ -48,7 +66,7 @@ class Log(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         torques, currents, remarks = _efforts(columns)
         _check_voltage(columns, [*torques, *currents])
-        found = channels(
+        by_channel = channels(
             {
                 "time": measured(columns, "time"),
                 "command": sorted(commanded(columns, "angle"), key=lambda column: not column.by_user)[:1],
@@ -58,21 +76,21 @@ class Log(Kind):
                 "rigid_torque": [column for column in columns if column.channel.modelled],
             }
         )
-        sides, why = put_sided(found, columns, torques, mapping)
+        sides, why = put_sided(by_channel, columns, torques, mapping)
         first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
-        return ColumnRoles(self.name, found, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
+        return ColumnRoles(self.name, by_channel, next(iter(sides)) if len(sides) == 1 else None, (first, *why), remarks)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit friction, inertia and gravity along the motion, with two encoders what lies between them; and warm-up."""
         if (warm := warmed(file)) is None:
             return fit_along_motion(file, known)
-        own, found = warm
+        own, warming = warm
         try:
             result, after = fit_along_motion(file, known)
         except ValueError as error:
             remarks = (*file.remarks, f"not used along its motion: {error}")
             result, after = replace(own, estimates=(), checks=(), remarks=remarks), known
-        after, assumed = with_fall(after, found, own)
+        after, assumed = with_fall(after, warming, own)
         return replace(
             result,
             estimates=(*result.estimates, *own.estimates),
@@ -82,9 +100,14 @@ class Log(Kind):
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return the laws of friction by their error on data held out."""
-        found = log_of(file, known)
-        unit = found.log.units[0]
-        return tuple(_ranked(each, unit) for each in fit_motion([found.log], found.drive))
+        prepared = log_of(file, known)
+        ranked = []
+        for each in fit_motion([prepared.log], prepared.drive):
+            correlation = max(correlation_length(part.residuals[0]) for part in each.fit.parts)
+            nuisances = sum(len(part.experiment.nuisances) for part in each.fit.parts)
+            fitted = len(each.fit.estimates) - nuisances - len(each.model.ties)
+            ranked.append(Ranked(each.name, fitted, each.error, np.nan, prepared.log.units[0], correlation))
+        return tuple(ranked)
 
     def predict(self, file: Recognised, gear_set: GearSet) -> Prediction:
         """Compare the torque along the motion with that of a saved drive."""
@@ -122,8 +145,83 @@ def _check_voltage(columns: Sequence[Column], others: Sequence[Column]) -> None:
             raise QuestionError(f"{column.name} may be a torque, a current or a voltage", ways)
 
 
-def _ranked(each: MotionCandidate, unit: str) -> Ranked:
-    correlation = max(correlation_length(part.residuals[0]) for part in each.fit.parts)
-    nuisances = sum(len(part.experiment.nuisances) for part in each.fit.parts)
-    fitted = len(each.fit.estimates) - nuisances - len(each.model.ties)
-    return Ranked(each.name, fitted, each.error, np.nan, unit, correlation)
+# ---- Motions and torques with their sides ----------------------------------------------------------------------------
+
+
+def put_sided(
+    found: dict[str, Column], columns: Sequence[Column], torques: Sequence[Column], mapping: FileMapping
+) -> tuple[set[Side], list[str]]:
+    """Add motions and torques of a log with their sides; return the sides that move, and what determines them."""
+    motions, why = _of_both_shafts([*measured(columns, "angle"), *measured(columns, "speed")])
+    if not motions:
+        raise QuestionError(f"a log needs an angle or a speed; it has {names_of(columns)}")
+    sides: set[Side] = set()
+    for column in motions:
+        side, why_side = side_of_motion(column, (*motions, *torques), found.get("time"), mapping.side)
+        sides.add(side)
+        why.append(why_side)
+        put(found, f"{'reflected' if column.channel.reflected else side}_{column.channel.quantity}", column)
+    why += _reflect(found, mapping)
+    if len(torques) > 1 and not any(column.by_user or column.channel.side for column in torques):
+        raise QuestionError(f"each of {names_of(torques)} may be the torque", sides_of_torques(torques))
+    for column in torques:
+        side, why_side = side_of_torque(column, sides, mapping.side)
+        why.append(why_side)
+        put(found, "joint_torque" if side == "output" else "input_torque", column)
+    return sides, [each for each in why if each]
+
+
+def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]:
+    """Return the motions, with the sides of two whose names contain none by their sizes; and what determines them."""
+    sided, why = list(motions), list[str]()
+    for quantity in ("angle", "speed"):
+        both = [column for column in sided if column.channel.quantity == quantity]
+        is_open = [column.channel.side is None for column in both]
+        small, large = sorted(float(np.ptp(column.si)) for column in both) if len(both) == 2 else (0.0, 0.0)
+        if len(both) == 2 and (all(is_open) or (any(is_open) and large > MIN_FACTOR_OF_SIDES * small > 0.0)):
+            fast, slow, why_side = sides_of_angles(both)
+            sides: tuple[tuple[Column, Side], ...] = ((fast, "input"), (slow, "output"))
+            for column, side in sides:
+                sided[sided.index(column)] = replace(column, channel=column.channel._replace(side=side))
+            why.append(why_side)
+        elif len(both) == 2 and any(is_open) and not all(is_open) and _are_apart(both):
+            named, other = both if is_open[1] else both[::-1]
+            of_other: Side = "output" if named.channel.side == "input" else "input"
+            sided[sided.index(other)] = replace(other, channel=other.channel._replace(side=of_other))
+            why.append(f"{other.name} is recorded with {named.name}, from which it differs: it is that of the {of_other}")
+    return sided, why
+
+
+def _are_apart(both: Sequence[Column]) -> bool:
+    """True for two motions that are alike, but not the same."""
+    first, second = (column.si for column in both)
+    return bool(np.nanmax(np.abs(first - second)) > 0.0) and abs(_slope(first, second) - 1.0) < MAX_REFLECTED
+
+
+@np.errstate(all="ignore")
+def _slope(motion: Array, other: Array) -> float:
+    return abs(float(np.cov(motion, other)[0, 1] / np.var(other, ddof=1)))
+
+
+@np.errstate(all="ignore")
+def _reflect(found: dict[str, Column], mapping: FileMapping) -> list[str]:
+    """Rename motions of the input that are as large as those of a joint, as they are divided by the ratio."""
+    if abs(abs(mapping.constants.get("ratio", np.inf)) - 1.0) < MAX_REFLECTED:
+        return []
+    why = []
+    for quantity in ("angle", "speed"):
+        motor, joint = found.get(f"input_{quantity}"), found.get(f"output_{quantity}")
+        if motor is None or joint is None:
+            continue
+        if not np.ptp(joint.si) > 0.0:
+            del found[f"output_{quantity}"]
+            why.append(f"{joint.name} never changes, as of an encoder that is not there: it is left out")
+            if np.ptp(motor.si) < MAX_REFLECTED_RANGE and not motor.by_user:
+                found[f"reflected_{quantity}"] = found.pop(f"input_{quantity}")
+                moves = f"{motor.name} moves no further than a joint: it is taken as divided by the ratio"
+                why.append(f"{moves}; otherwise add {as_option('column', f'input_{quantity}', motor.name)}")
+            continue
+        if abs(_slope(motor.si, joint.si) - 1.0) < MAX_REFLECTED:
+            found[f"reflected_{quantity}"] = found.pop(f"input_{quantity}")
+            why.append(f"{motor.name} moves as far as {joint.name}: it is the {quantity} of the motor divided by the ratio")
+    return why

@@ -7,19 +7,17 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, commanded, measured, names_of
-from strainwave.identification.reading.sides import pair
+from strainwave.identification.reading.roles import Column, ColumnRoles, commanded, measured, names_of, pair
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.orders.positioning import Positioning, positioning
 from strainwave.questions import QuestionError
 
 MIN_INPUT_ORDER = 0.5  # of the input's turn: slower errors are named by the axis alone
-EFFORTS = ("torque", "current", "voltage", "speed", "vibration")
+OTHER_QUANTITIES = ("torque", "current", "voltage", "speed", "vibration")
 
 
 class PositioningSteps(Kind):
@@ -29,7 +27,7 @@ class PositioningSteps(Kind):
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
         """True for a commanded and a measured angle, or an angle with its error, without what drove it."""
-        angles, others = measured(columns, "angle"), measured(columns, *EFFORTS)  # type: ignore[arg-type]
+        angles, others = measured(columns, "angle"), measured(columns, *OTHER_QUANTITIES)  # type: ignore[arg-type]
         pairs = len(commanded(columns, "angle")) + len(measured(columns, "twist"))
         return len(angles) <= 1 and pairs + len(angles) == 2 and not others and pairs > 0
 
@@ -37,24 +35,25 @@ class PositioningSteps(Kind):
         wanted, error = commanded(columns, "angle"), measured(columns, "twist")
         reached = measured(columns, "angle")
         if len(wanted) == 1 and len(reached) == 1:
-            found = {"command": wanted[0], "output_angle": reached[0]}
+            by_channel = {"command": wanted[0], "output_angle": reached[0]}
         elif len(error) == 1 and len([*wanted, *reached]) == 1:
-            found = {"command": [*wanted, *reached][0], "twist": error[0]}
+            by_channel = {"command": [*wanted, *reached][0], "twist": error[0]}
         else:
             raise QuestionError(f"{self.title} needs {self.needs}; it has {names_of(columns)}")
-        side = mapping.side or found["command"].channel.side or "output"
-        return ColumnRoles(self.name, found, side, (f"its columns are {pair(*found.values())}: {self.title}",))
+        side = mapping.side or by_channel["command"].channel.side or "output"
+        return ColumnRoles(self.name, by_channel, side, (f"its columns are {pair(*by_channel.values())}: {self.title}",))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Return lost motion and the errors of ISO 230-2; the gear keeps its numbers."""
-        found, ratio = positioning_of(file), abs(known.gear_set.gear.kinematics.ratio)
-        estimates = [FileEstimate("lost_motion", "rad", found.lost_motion, found.lost_motion_sigma, "")]
+        errors, ratio = positioning_of(file), abs(known.gear_set.gear.kinematics.ratio)
+        estimates = [FileEstimate("lost_motion", "rad", errors.lost_motion, errors.lost_motion_sigma, "")]
         estimates += [
-            FileEstimate(f"positioning_error of order {order:g}", "rad", size, sigma, "") for order, size, sigma in found.orders
+            FileEstimate(f"positioning_error of order {order:g}", "rad", size, sigma, "")
+            for order, size, sigma in errors.orders
         ]
         stated = tuple(each for each in estimates if np.isfinite(each.value))
-        remarks = (*file.remarks, *positioning_words(found, file.side, ratio), *found.remarks)
-        how = "steps to and fro" if found.targets else "error over the angle, from one side"
+        remarks = (*file.remarks, *positioning_words(errors, file.side, ratio), *errors.remarks)
+        how = "steps to and fro" if errors.targets else "error over the angle, from one side"
         return FileResult(file.path.name, file, how, stated, remarks), known
 
 

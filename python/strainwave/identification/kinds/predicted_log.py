@@ -19,8 +19,8 @@ from strainwave.identification.experiments.motion import Motion
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.changes import (
-    ANGLE,
+from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.prediction import (
     DELAY,
     DRY,
     FRICTION,
@@ -28,18 +28,20 @@ from strainwave.identification.results.changes import (
     INERTIA,
     MIN_CHANGE,
     MIN_CHANGE_TEXT,
-    MIN_SAMPLES,
+    MIN_SLIDING_SAMPLES,
     TEMPERATURE,
     VISCOUS,
     ZERO,
+    ZERO_OF_ANGLE,
     Direction,
     PartChange,
+    Prediction,
     changes_of,
     friction_directions,
+    judged,
     slopes_by_numbers,
+    validations,
 )
-from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.prediction import Prediction, judged, validations
 from strainwave.messages import listed, one_line
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.torque_ripple import ripple
@@ -75,21 +77,21 @@ def predict_log(file: Recognised, gear_set: GearSet) -> Prediction:
             f"{gear_set.name} has no [load], without which no torque along a motion is predicted; identify it from a log, with "
             "--constant torque_constant=NUMBER if the log contains a current: a rough one will do to predict currents"
         )
-    found = _predicted(file, gear_set)
-    if not found.contradicts:
-        return found
+    prediction = _predicted(file, gear_set)
+    if not prediction.contradicts:
+        return prediction
     turned = _predicted(_turned(file), gear_set)
-    if turned.error > MAX_ERROR_OF_TURNED * found.error:
-        return found
+    if turned.error > MAX_ERROR_OF_TURNED * prediction.error:
+        return prediction
     remark = f"the angle is counted in the other sense than {gear_set.name} has it: its sign is turned round"
     return replace(turned, remarks=(remark, *turned.remarks))
 
 
 def _predicted(file: Recognised, gear_set: GearSet) -> Prediction:
-    taken = log_of(file, GearSoFar(gear_set))
-    if taken.in_current:
+    prepared = log_of(file, GearSoFar(gear_set))
+    if prepared.in_current:
         raise QuestionError(f"{gear_set.name} has no torque constant", [TORQUE_CONSTANT])
-    return judged(*_PredictedLog.of(file, taken, gear_set).prediction(file, gear_set))
+    return judged(*_PredictedLog.of(file, prepared, gear_set).prediction(file, gear_set))
 
 
 def _turned(file: Recognised) -> Recognised:
@@ -134,16 +136,16 @@ class _PredictedLog(ComparedByFields):
         own = [each for each in every if each.file == one_line(file.path.name)]
         saved = next(iter((*own, *every)), None)
         zero, delay, shares = (saved.zero, saved.delay, saved.shares) if saved else (0.0, 0.0, {})
-        known = [each for each in logs if list(each.regressors) == list(shares) and (own or shares)]
-        log = known[0] if known else min(logs, key=lambda each: held_out_rms(each, taken.drive))
+        alike = [each for each in logs if list(each.regressors) == list(shares) and (own or shares)]
+        log = alike[0] if alike else min(logs, key=lambda each: held_out_rms(each, taken.drive))
         log = replace(log, recorded=log.recorded - zero, force=log.force - zero)
-        return cls(taken, log.with_delay(), drive, zero, delay, shares if known else {})
+        return cls(taken, log.with_delay(), drive, zero, delay, shares if alike else {})
 
     @property
     def nuisances(self) -> Array:
         """Delay of the measurement, and terms of other joints as saved, shape (k,); the zero is no part of the drive."""
-        known = {f"{SHARE_OF}{name}": share for name, share in self.shares.items()} | {"delay": self.delay + self.later}
-        return np.array([known.get(each.name, 0.0) for each in self.log.nuisances])
+        saved = {f"{SHARE_OF}{name}": share for name, share in self.shares.items()} | {"delay": self.delay + self.later}
+        return np.array([saved.get(each.name, 0.0) for each in self.log.nuisances])
 
     @cached_property
     def rows(self) -> Rows:
@@ -154,7 +156,7 @@ class _PredictedLog(ComparedByFields):
     def band(self) -> Motion:
         """Motion in which changes are estimated: sliding in the narrowest pass band; all if there is little."""
         narrowest = bands(self.log, self.drive)[-1].motion
-        return narrowest if len(narrowest.rows) >= MIN_SAMPLES else self.log.motion.in_full_band()
+        return narrowest if len(narrowest.rows) >= MIN_SLIDING_SAMPLES else self.log.motion.in_full_band()
 
     def at(self, drive: Drive) -> Array:
         """Return the effort that a drive predicts, shape (m,)."""
@@ -171,7 +173,7 @@ class _PredictedLog(ComparedByFields):
         changed = there.log.residual(there.drive, there.nuisances) - _explained(values, directions)
         channel, unit, measured = log.effort, log.units[0], log.recorded + self.zero
         lines, about_lines = self._lines(residual, file)
-        found = Prediction(
+        comparison = Prediction(
             file.path.name, gear_set.name, file.kind, channel, unit, rms(residual[rows]), float(np.std(measured[rows])),
             self._plain_error(), samples=int(rows.sum()),
             changes=tuple(each for each in changes if not each.name.startswith(SHARE_OF)),
@@ -183,7 +185,7 @@ class _PredictedLog(ComparedByFields):
             ),
             remarks=(*file.remarks, *self.taken.remarks, *self._remarks(), *about_lines),
         )  # fmt: skip
-        return found, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
+        return comparison, gear_set, float(np.mean(np.einsum("np,pq,nq->n", slopes[rows], covariance, slopes[rows])))
 
     def _estimated(self, gear_set: GearSet) -> tuple[_PredictedLog, list[Direction], tuple[PartChange, ...]]:
         """Return the log with its delay and zero of the angle, how the effort changes with each part there, and the changes.
@@ -207,9 +209,9 @@ class _PredictedLog(ComparedByFields):
         values = {each.name: each.value for each in changes}
         longest = MAX_DELAY_SAMPLES * self.log.motion.step
         later = min(max(values.pop(DELAY, self.delay) - self.delay, -longest), longest)
-        if ANGLE not in values:
+        if ZERO_OF_ANGLE not in values:
             return self._turned_by(-self.turned, later, values)
-        scale, across = values.get(GRAVITY, 1.0), self.values.get(GRAVITY, 1.0) * (values.pop(ANGLE) - self.turned)
+        scale, across = values.get(GRAVITY, 1.0), self.values.get(GRAVITY, 1.0) * (values.pop(ZERO_OF_ANGLE) - self.turned)
         return self._turned_by(float(np.arctan2(across, scale)), later, values | {GRAVITY: float(np.hypot(scale, across))})
 
     def _turned_by(self, more: float, later: float, values: Mapping[str, float]) -> _PredictedLog:
@@ -223,7 +225,9 @@ class _PredictedLog(ComparedByFields):
         asked = [replace(each, effect=band.filtered(each.effect)) for each in directions]
         left, by_numbers = band.filtered(self.log.force - self.at(self.drive)), band.filtered(slopes.T).T
         _, explained = changes_of(left, asked, by_numbers, covariance)
-        changes, _ = changes_of(left, asked, by_numbers, covariance, _by_speed(left - explained, speed))
+        parts = np.array_split((left - explained)[np.argsort(speed, kind="stable")], SPEED_BINS)
+        by_speed = rms(np.array([float(np.mean(part)) for part in parts if len(part)]))  # another motion weighs it otherwise
+        changes, _ = changes_of(left, asked, by_numbers, covariance, by_speed)
         return changes
 
     def _directions(self) -> Iterator[Direction]:
@@ -239,7 +243,7 @@ class _PredictedLog(ComparedByFields):
             scale = max(self.values.get(GRAVITY, 1.0), MIN_GRAVITY_SCALE)
             less, greater = (self.at(_turned_drive(drive, angle)) for angle in (-ANGLE_STEP, ANGLE_STEP))
             yield Direction(
-                ANGLE, "rad", 0.0, scale * (greater - less) / (2.0 * ANGLE_STEP), MIN_CHANGE,
+                ZERO_OF_ANGLE, "rad", 0.0, scale * (greater - less) / (2.0 * ANGLE_STEP), MIN_CHANGE,
                 f"{np.degrees(MIN_CHANGE):.2g}°", MAX_ANGLE_SIGMA, self.turned,
             )  # fmt: skip
 
@@ -272,8 +276,8 @@ class _PredictedLog(ComparedByFields):
         recording = self.taken.recording
         if "temperature" not in recording or np.ptp(recording.values("temperature", "K")) < MIN_TEMPERATURE_RANGE:
             return None
-        found = np.interp(self.log.motion.time, recording.time, recording.values("temperature", "K"))
-        return np.asarray(found - np.mean(found))
+        temperature = np.interp(self.log.motion.time, recording.time, recording.values("temperature", "K"))
+        return np.asarray(temperature - np.mean(temperature))
 
     def _plain_error(self) -> float:
         """Return the error of plain least squares fitted to this log itself, root mean square."""
@@ -292,10 +296,10 @@ class _PredictedLog(ComparedByFields):
             columns[column] = np.interp(motion.time, file.recording.time, file.recording[file.neighbours[name]])
             units[column] = "rad"
         try:
-            found = ripple(Recording(columns, units), "residual", angle="input_angle", side="input", other_angles=others)
+            orders = ripple(Recording(columns, units), "residual", angle="input_angle", side="input", other_angles=others)
         except ValueError as error:
             return (), (f"no orders are looked for in the residual: {error}",)
-        return found.lines[:MAX_LINES], ()
+        return orders.lines[:MAX_LINES], ()
 
     def _remarks(self) -> Iterator[str]:
         if self.log.regressors:
@@ -320,9 +324,3 @@ def _explained(values: Mapping[str, float], directions: Sequence[Direction]) -> 
         for name in (DRY, VISCOUS) if whole == FRICTION else (whole,):
             total += (value - parts[name].start) * parts[name].effect
     return total
-
-
-def _by_speed(left: Array, speed: Array) -> float:
-    """Return the root mean square of what is left on average at each speed: another motion weighs it otherwise."""
-    parts = np.array_split(left[np.argsort(speed, kind="stable")], SPEED_BINS)
-    return rms(np.array([float(np.mean(part)) for part in parts if len(part)]))

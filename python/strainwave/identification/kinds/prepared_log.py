@@ -13,14 +13,13 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.entries import OPPOSITE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.plain import along_best_motion, fit_plain
-from strainwave.identification.candidates.torque_place import TorquePlace, torque_place
-from strainwave.identification.dynamics.coupling import are_numbers, coupled, in_order
+from strainwave.identification.candidates.coupling import are_numbers, coupled, in_order
+from strainwave.identification.candidates.plain import TorquePlace, along_best_motion, fit_plain, torque_place
 from strainwave.identification.experiments.motion import integrated
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, spoilt
 from strainwave.identification.reading.names import which_of, words_of
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.gear_so_far import GearSoFar, TorqueConstant, relative_sigma, rotor_sigma
+from strainwave.identification.results.gear_so_far import GearSoFar, relative_sigma, rotor_sigma, torque_constant_of
 from strainwave.messages import listed
 from strainwave.questions import Answer, QuestionError
 
@@ -108,13 +107,13 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
         remarks.append(f"outliers or clipped samples of {log.effort} are left out: {spoilt_rows}, {share:.2g} % of all")
     given = {"load.inertia": file.constants["load_inertia"]} if "load_inertia" in file.constants and not in_current else {}
     rests = log.effort in ("current", "voltage") and not in_current  # a torque that was measured rests on no constant
-    constant = TorqueConstant.of(file, known.gear_set) if rests else None
+    constant = torque_constant_of(file, known.gear_set) if rests else None
+    relative = 0.0 if constant is None else constant[1]
     turning = place.drive.motor.inertia + place.drive.gear.input_inertia
     of_recorder = RECORDER_BIAS * turning if log.effort == "current" and not in_current else 0.0
     spread = 0.0 if in_current or place.drive is not drive else rotor_sigma(file, known.gear_set)
     drive = place.drive
     rotor = float(np.linalg.norm([spread, of_recorder, place.open_inertia])) * drive.gear.kinematics.ratio**2
-    relative = 0.0 if constant is None else constant.relative
     by_voltage = log.effort == "voltage" and "resistance" not in file.constants
     of_resistance = (
         relative_sigma(known.gear_set, "motor.resistance", getattr(drive.motor, "resistance", 0.0)) if by_voltage else 0.0
@@ -178,16 +177,16 @@ def _motor_by_voltage(file: Recognised, given: Any, rotor: float | None) -> moto
     Raises:
         ValueError: resistance or torque constant is neither given nor known of the set
     """
-    known = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
-    if missing := [name for name, value in known.items() if value == 0.0]:
+    numbers = {name: file.constants.get(name, getattr(given, name, 0.0)) for name in ("resistance", "torque_constant")}
+    if missing := [name for name, value in numbers.items() if value == 0.0]:
         units, column = {"resistance": "Ohm, of the motor", "torque_constant": "N.m/A, of the motor"}, file.columns["voltage"]
         ways = [
             Answer("the motor is known", {"constants": dict.fromkeys(missing, 1.0)}, {name: units[name] for name in missing}),
             Answer("it asks an amplifier for a current", {"columns": {"current": column}, "units": {column: "A"}}),
         ]
         raise QuestionError("a voltage determines the torque of a motor that is known", ways)
-    induced = known["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
-    return motor.DC(**known, back_emf=induced or known["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
+    induced = numbers["torque_constant"] if "torque_constant" in file.constants else getattr(given, "back_emf", 0.0)
+    return motor.DC(**numbers, back_emf=induced or numbers["torque_constant"], inductance=0.0, inertia=rotor or MIN_INERTIA)
 
 
 def _loaded(file: Recognised) -> Recording:

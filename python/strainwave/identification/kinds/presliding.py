@@ -9,13 +9,12 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import PreslidingCandidate, fit_presliding
+from strainwave.identification.candidates.presliding import PreslidingCandidate, PreslidingLoop, fit_presliding
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
-from strainwave.identification.experiments.presliding import PreslidingLoop
 from strainwave.identification.kinds.at_rest import (
-    BRISTLES,
-    SLIDING,
+    BRISTLE_LAWS,
+    SLIDING_LAWS,
     WITH_BREAKAWAY,
     AtRest,
     at_input,
@@ -23,15 +22,15 @@ from strainwave.identification.kinds.at_rest import (
     goes_to_and_fro,
 )
 from strainwave.identification.kinds.kind import Ranked
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.reading.roles import Column
+from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.pictures import Picture
 from strainwave.parameters import plain
 from strainwave.statistics.residuals import correlation_length
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 
 class Presliding(AtRest):
@@ -120,8 +119,8 @@ def _with_bristles(
 ) -> tuple[GearSoFar, list[str]]:
     """Return the gear with the law that a loop determines, and remarks; the gear as it is if the loop fits no law of it."""
     sliding = known.sliding()
-    if not isinstance(sliding, SLIDING):
-        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLES) else "which has no bristles"
+    if not isinstance(sliding, SLIDING_LAWS):
+        why = "which has bristles by an earlier file" if isinstance(sliding, BRISTLE_LAWS) else "which has no bristles"
         return known, [f"the gear keeps its friction law, {sliding.name}, {why}; the numbers stand in the results"]
     if best.reach < 1.0 and slides is None:
         return known, []

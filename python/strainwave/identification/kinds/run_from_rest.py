@@ -9,30 +9,25 @@ import numpy as np
 
 from strainwave import Drive
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.drive_log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.checks.unexplained import causes, explained, unexplained
-from strainwave.identification.dynamics.log import LogFit, fit_log, free_parameters, prepared
 from strainwave.identification.experiments.drive_log import DriveLog
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.fitting.influence import InfluenceOfKept, influence
-from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
-from strainwave.identification.kinds.shafts import put_sided
-from strainwave.identification.reading.column import Column
+from strainwave.identification.kinds.kind import Kind, exceeded, thinned, unused
+from strainwave.identification.kinds.log import put_sided
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, commanded, measured, names_of
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.curves import pictures_of_channels
-from strainwave.identification.results.file_result import FileResult
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
+from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import MAX_LISTED, JudgedFit
-from strainwave.identification.results.undetermined import with_set_before
+from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit, with_set_before
+from strainwave.identification.results.pictures import pictures_of_channels
 from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
 
 MAX_CAUSES = 2  # likely mistakes that are fitted if the model does not explain a run, the likeliest first
-MAX_SHARE_LEFT = 0.5  # of what was unexplained before: a mistake that leaves more explains nothing
+MAX_SHARE_LEFT_BY_MISTAKE = 0.5  # of what was unexplained before: a mistake that leaves more explains nothing
 
 
 class RunFromRest(Kind):
@@ -42,18 +37,18 @@ class RunFromRest(Kind):
 
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         """Return the channel of each column; an encoder is that of the motor."""
-        found = channels(
+        by_channel = channels(
             {
                 "time": measured(columns, "time"),
                 "command": commanded(columns, "angle") or commanded(columns, "voltage"),
                 "current": measured(columns, "current"),
             }
         )
-        if "command" not in found:
+        if "command" not in by_channel:
             raise QuestionError(f"{self.title} needs its command; it has {names_of(columns)}")
-        _, why = put_sided(found, columns, [], mapping if mapping.side else replace(mapping, side="input"))
+        _, why = put_sided(by_channel, columns, [], mapping if mapping.side else replace(mapping, side="input"))
         first = f"it has {names_of(columns)}, {len(columns[0].si)} rows in time: {self.title}"
-        return ColumnRoles(self.name, found, None, (first, *why))
+        return ColumnRoles(self.name, by_channel, None, (first, *why))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit what no better file determines, by simulating the drive."""
@@ -62,19 +57,19 @@ class RunFromRest(Kind):
         friction_known, torsion_known = (part in known.determined for part in ("friction_input", "stiffness"))
         drive = prepared(log, known.gear_set.drive, friction_known=friction_known)
         free = free_parameters(log, drive, friction_known=friction_known, torsion_known=torsion_known)
-        found = fit_log(log, drive, free)
-        whole = explained(found.fit, name)
-        kept = InfluenceOfKept.none(len(found.fit.estimates)) if whole.failed else influence(found.fit)
+        log_fit = fit_log(log, drive, free)
+        whole = explained(log_fit.fit, name)
+        kept = InfluenceOfKept.none(len(log_fit.fit.estimates)) if whole.failed else influence(log_fit.fit)
         if whole.failed:
-            whole = _with_cause(whole, found.fit, file, drive, free)
-        fitted = JudgedFit(found.fit, name, kept, not whole.failed, prefix="")
-        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), found.fit
+            whole = _with_cause(whole, log_fit.fit, file, drive, free)
+        fitted = JudgedFit(log_fit.fit, name, kept, not whole.failed, prefix="")
+        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), log_fit.fit
         if not whole.failed:
             fit, estimates = with_set_before(fit, estimates, known)
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
-            (*file.remarks, *_remarks(recording, log, found.fit, kept, known)), (whole,),
-            pictures=pictures_of_channels(fit), held_out=_held_out(found), fit=fit,
+            (*file.remarks, *_remarks(recording, log, log_fit.fit, kept, known)), (whole,),
+            pictures=pictures_of_channels(fit), held_out=_held_out(log_fit), fit=fit,
         )  # fmt: skip
         if whole.failed:
             return result, known
@@ -105,7 +100,7 @@ def _remarks(recording: Recording, log: DriveLog, fit: Fit, kept: InfluenceOfKep
         others = [
             f"{each.path} = {each.value:.4g} {each.unit} (about {each.value + kept.shift_if_free[place]:.3g} {each.unit} would "
             f"leave {100.0 * kept.explained_share[place]:.0f} % less of the residuals' power)"
-            for place in wrong[:MAX_LISTED]
+            for place in wrong[:MAX_KEPT_LISTED]
             for each in [kept.kept[place]]
         ]
         yield f"the run contradicts what was kept: {' or '.join(others)}. Measure them, or free one"
@@ -132,7 +127,7 @@ def _with_cause(check: Check, found: Fit, file: Recognised, drive: Drive, free: 
         if not explained(again, check.source).failed:
             what = f"{cause.what[0].upper()}{cause.what[1:]}: then it is explained"
             return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
-        if float(unexplained(again).max()) < MAX_SHARE_LEFT * before:
+        if float(unexplained(again).max()) < MAX_SHARE_LEFT_BY_MISTAKE * before:
             what = f"Perhaps {cause.what}: then less is left"
             return replace(check, message=f"{check.message}. {what}", remedy=cause.remedy)
     remedy = "no single mistake in sign, unit, side or ratio explains it; look at the plot, and at what is known of the drive"

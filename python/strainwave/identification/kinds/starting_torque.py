@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 
 from strainwave.files.units import convert
 from strainwave.identification.checks.sizes import friction_at_rest
-from strainwave.identification.kinds.at_rest import BREAKAWAY, with_breakaway
+from strainwave.identification.kinds.at_rest import with_breakaway
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import is_at_rest
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, channels, first, measured, needed
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.reading.roles import Column, ColumnRoles, channels, first, measured, needed
+from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.linear_fit import linear_fit
 
@@ -41,10 +40,10 @@ class StartingTorque(Kind):
         starting = [each for each in torques if is_at_rest(each.label.name)] or torques
         torque = needed(starting, "torque", self.title)
         loads = [each for each in torques if each not in starting]
-        found = channels({"torque": [torque], "load_torque": loads})
+        by_channel = channels({"torque": [torque], "load_torque": loads})
         side = mapping.side or torque.channel.side or "input"
         why = f"{torque.name} is the torque at which the {side} begins to turn, in each row: {self.title}"
-        return ColumnRoles(self.name, {**found, **first(columns, "temperature")}, side, (why,))
+        return ColumnRoles(self.name, {**by_channel, **first(columns, "temperature")}, side, (why,))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the breakaway torque without load, at the mean temperature, and how it changes with both.
@@ -58,20 +57,20 @@ class StartingTorque(Kind):
                 "that of the input, or a log of the joint, driven from its output"
             )
         name, torque = file.path.name, np.abs(file.recording.values("torque", "N.m"))
-        given = {each: file.recording.values(each, unit) for each, unit in CONDITIONS.items() if each in file.recording}
-        varying = {each: np.abs(values) for each, values in given.items() if np.ptp(values) > 0.0}
+        conditions = {each: file.recording.values(each, unit) for each, unit in CONDITIONS.items() if each in file.recording}
+        varying = {each: np.abs(values) for each, values in conditions.items() if np.ptp(values) > 0.0}
         if "temperature" in varying:
             varying["temperature"] = varying["temperature"] - varying["temperature"].mean()
         columns = np.stack([np.ones_like(torque), *varying.values()], axis=1)
         if len(torque) <= columns.shape[1]:
             raise ValueError(f"{len(torque)} rows show no scatter of a starting torque; {columns.shape[1] + 1} are the least")
-        found = linear_fit(columns, torque)
+        trend = linear_fit(columns, torque)
         if (steps := np.diff(np.unique(torque))).size == 0:
             raise ValueError(f"all {len(torque)} rows have the same torque, so its scatter is not seen: record more digits")
         rounding = float(steps.min()) / sqrt(12.0 * len(torque))  # of a digit, if rows agree to the last one
-        (level, *slopes), (sigma, *of_slopes) = found.values.tolist(), np.hypot(found.sigma, rounding).tolist()
-        estimate = FileEstimate(BREAKAWAY, "N.m", level, sigma, "").unless_uncertain()
-        at = f" at {convert(given['temperature'].mean(), 'K', 'degC'):.3g} °C" if "temperature" in given else ""
+        (level, *slopes), (sigma, *of_slopes) = trend.values.tolist(), np.hypot(trend.sigma, rounding).tolist()
+        estimate = FileEstimate(BREAKAWAY_PATH, "N.m", level, sigma, "").unless_uncertain()
+        at = f" at {convert(conditions['temperature'].mean(), 'K', 'degC'):.3g} °C" if "temperature" in conditions else ""
         remarks = [
             f"{len(torque)} trials: {level:.4g} ± {sigma:.2g} N·m{at}{', without load' if 'load_torque' in varying else ''}"
         ]

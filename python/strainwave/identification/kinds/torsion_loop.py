@@ -15,31 +15,25 @@ from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.ranking import rank_loop
-from strainwave.identification.checks.shape import judged_shape
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
-from strainwave.identification.checks.unexplained import explained
+from strainwave.identification.checks.unexplained import explained, judged_shape
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
-from strainwave.identification.kinds.kind import Kind, Ranked
-from strainwave.identification.kinds.remarks import exceeded, thinned, unused
-from strainwave.identification.reading.channels import Channel
-from strainwave.identification.reading.column import Column
+from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, measured, needed
-from strainwave.identification.reading.sides import pair
-from strainwave.identification.results.curves import curves_of
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, Picture
+from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.held_out import HeldOut
-from strainwave.identification.results.identifiability import JudgedFit
-from strainwave.identification.results.undetermined import with_set_before
+from strainwave.identification.results.identifiability import JudgedFit, with_set_before
+from strainwave.identification.results.pictures import Picture, curves_of
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 
 Array = NDArray[np.float64]
 
-MIN_ROWS = 4  # of a loop or branch
+MIN_LOOP_ROWS = 4  # of a loop or branch
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
 MAX_TWIST = 0.3  # rad of a gear at the output
 MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 900, no gear of a catalogue is as stiff
@@ -47,7 +41,7 @@ MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
 MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
 SERIES = "series_stiffness"  # of a spring behind the gear
-FRICTION = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
+FRICTION_KINDS = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
 class Torsion(Kind):
@@ -79,8 +73,8 @@ class Torsion(Kind):
         twist = _twist_of(columns)
         angle = twist or needed(columns, "angle", self.title)
         both, rows = pair(angle, torque), len(angle.si)
-        if rows < MIN_ROWS:
-            raise QuestionError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_ROWS} are the least")
+        if rows < MIN_LOOP_ROWS:
+            raise QuestionError(f"{rows} rows of {both} are no torsion loop or branch; {MIN_LOOP_ROWS} are the least")
         turns = len(turning_points(angle.si))
         branch = "one branch of a torsion loop, which shows stiffness only"
         shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
@@ -98,14 +92,18 @@ class Torsion(Kind):
         if side == "output" and (stiffness := _series_stiffness(angle.si, torque.si)):
             torque = replace(torque, si=float(np.copysign(1.0, stiffness)) * torque.si)
             remarks += (_computed(angle, torque, stiffness),)
-            remarks += tuple(_why_unused(current) for current in measured(columns, "current"))
+            remarks += tuple(
+                f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for "
+                "the friction of the gear write time, the angle of the motor and the current to a file of their own"
+                for current in measured(columns, "current")
+            )
         return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
         """Return its turn: loops at the output go first, as they separate hysteresis from friction."""
         if "input_angle" not in file.recording:
             return self.name, 0
-        return ("torsion", 1) if FRICTION & set(kinds) or "run" not in kinds else ("run", 1)
+        return ("torsion", 1) if FRICTION_KINDS & set(kinds) or "run" not in kinds else ("run", 1)
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit springs with Maxwell elements."""
@@ -135,7 +133,14 @@ class Torsion(Kind):
         )  # fmt: skip
         if in_series:
             assumed = {"series stiffness": f"{abs(in_series):.4g} N·m/rad, which the recorder assumed and did not measure"}
-            return replace(result, estimates=tuple(_in_series(estimates)), unchecked=assumed), known
+            unmeasured = tuple(
+                replace(
+                    each, path=each.path.replace("gear.stiffness.k", SERIES), sigma=np.inf, why=ASSUMED_BY_RECORDER,
+                    in_combination=False,
+                )
+                for each in estimates
+            )  # fmt: skip
+            return replace(result, estimates=unmeasured, unchecked=assumed), known
         if whole.failed or known.knows_better("stiffness", estimates):
             return result, known
         # a loop at the input has friction inside, and an error of the table of friction becomes hysteresis
@@ -148,19 +153,11 @@ class Torsion(Kind):
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return all springs and hysteresis laws by their error on data held out."""
-        found = rank_loop(TorsionLoop.of(file.recording, known.gear_set.gear), known.gear_set.gear)
+        ranking = rank_loop(TorsionLoop.of(file.recording, known.gear_set.gear), known.gear_set.gear)
         return tuple(
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
-            for each in found
+            for each in ranking
         )
-
-
-def _why_unused(current: Column) -> str:
-    """Return why a current beside a spring behind the gear is not used."""
-    return (
-        f"{current.name} is not used: the spring lies between the two angles, and would be taken for the gear's; for the "
-        "friction of the gear write time, the angle of the motor and the current to a file of their own"
-    )
 
 
 def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
@@ -171,7 +168,12 @@ def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:
     angle, torque = angles[0].si, torques[0].si
     if _exceeds_twist(angles[0], mapping):
         return False
-    return in_steps(times[0].si, angle, torque) or (_is_spring(angle, torque) and _is_as_stiff_as_a_gear(angle, torque))
+    if in_steps(times[0].si, angle, torque):
+        return True
+    if not _is_spring(angle, torque) or np.ptp(angle) >= MAX_TWIST:
+        return False
+    # weight and inertia of no joint are as stiff as a gear
+    return bool(np.cov(angle, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(angle))
 
 
 def is_series_spring(columns: Sequence[Column]) -> bool:
@@ -196,7 +198,7 @@ def _twist_of(columns: Sequence[Column]) -> Column | None:
 def _series_stiffness(twist: Array, torque: Array) -> float:
     """Return the stiffness of a spring that is softer than any gear, if a torque is a multiple of its twist; else zero."""
     rows = np.isfinite(twist) & np.isfinite(torque)
-    if np.count_nonzero(rows) < MIN_ROWS or not (np.ptp(twist[rows]) > 0.0 and np.ptp(torque[rows]) > 0.0):
+    if np.count_nonzero(rows) < MIN_LOOP_ROWS or not (np.ptp(twist[rows]) > 0.0 and np.ptp(torque[rows]) > 0.0):
         return 0.0
     covariance = np.cov(twist[rows], torque[rows])
     stiffness = float(covariance[0, 1] / covariance[0, 0])
@@ -220,11 +222,6 @@ def _is_spring(angle: Array, torque: Array) -> bool:
     """True if the torque alternates and follows the angle."""
     alternates = torque.min() < 0.0 < torque.max() and np.ptp(angle) > 0.0
     return bool(alternates and abs(np.corrcoef(angle, torque)[0, 1]) > MIN_CORRELATION_OF_SPRING)
-
-
-def _is_as_stiff_as_a_gear(twist: Array, torque: Array) -> bool:
-    """True if a torque grows with an angle as at the output of a gear: weight and inertia of no joint are as stiff."""
-    return bool(np.cov(twist, torque)[0, 1] > MIN_STIFFNESS_AT_OUTPUT * np.var(twist) and np.ptp(twist) < MAX_TWIST)
 
 
 def _why_output(angle: Column, torque: Column) -> str:
@@ -252,13 +249,6 @@ def _computed(twist: Column, torque: Column, stiffness: float) -> str:
         "on a lever, a load cell, or the current of the motor in slow motion both ways does. The gear keeps its own spring, "
         "which is far stiffer: give a drive whose angles are those on both sides of the spring this stiffness instead"
     )
-
-
-def _in_series(estimates: Sequence[FileEstimate]) -> Iterator[FileEstimate]:
-    """Yield the estimates of a spring behind the gear: nothing measured its stiffness, or what its torque leaves."""
-    for each in estimates:
-        path = each.path.replace("gear.stiffness.k", SERIES)
-        yield replace(each, path=path, sigma=np.inf, why=ASSUMED_BY_RECORDER, in_combination=False)
 
 
 def _place(loop: TorsionLoop) -> str:

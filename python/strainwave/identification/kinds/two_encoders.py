@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 from strainwave.files.entries import Entry
+from strainwave.files.recording import Recording
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
-from strainwave.identification.reading.sides import pair, sides_of_angles
-from strainwave.identification.results.curves import curves_of_orders, picture_of_turn
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
-from strainwave.identification.results.gear_so_far import AMPLITUDE, GearSoFar
-from strainwave.orders.two_encoders import CHANGING, TransmissionError, transmission_error
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of, pair, sides_of_angles
+from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar
+from strainwave.identification.results.pictures import Picture
+from strainwave.orders.two_encoders import WHY_AMPLITUDES_CHANGE, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
+
+Array = NDArray[np.float64]
+TURN_BINS = 72  # parts of a turn of the input: order 8 has nine of them
 
 
 class TwoEncoders(Kind):
@@ -34,17 +39,17 @@ class TwoEncoders(Kind):
             raise QuestionError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
         fast, slow, why_side = sides_of_angles(angles)
         why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
-        found = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
-        return ColumnRoles(self.name, found, None, tuple(filter(None, (why, why_side))))
+        by_channel = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
+        return ColumnRoles(self.name, by_channel, None, tuple(filter(None, (why, why_side))))
 
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
         given = file.constants.get("ratio")
-        found = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
+        errors = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
         name = file.path.name
-        remarks, pictures = (*file.remarks, *found.remarks), (picture_of_turn(found), Picture(curves_of_orders(found)))
-        result = FileResult(name, file, "orders of the input", tuple(orders_of(found)), remarks, pictures=pictures)
-        return result, with_error(known, found, name)
+        remarks, pictures = (*file.remarks, *errors.remarks), (picture_of_turn(errors), Picture(curves_of_orders(errors)))
+        result = FileResult(name, file, "orders of the input", tuple(orders_of(errors)), remarks, pictures=pictures)
+        return result, with_error(known, errors, name)
 
 
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:
@@ -53,7 +58,7 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
     if "kinematic_error" in known.determined or not law.order:
         return known
     by_order = {each.order: each for each in found.orders if each.significant and each.shaft != "output"}
-    sigmas = {f"{AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
+    sigmas = {f"{ERROR_AMPLITUDE}[{i}]": by_order[order].amplitude_sigma for i, order in enumerate(law.order)}
     sigmas |= {f"gear.kinematic_error.phase[{i}]": by_order[order].phase_sigma for i, order in enumerate(law.order)}
     if not found.vibrates:
         return known.with_parts({"kinematic_error": law}, sigmas, f"{name}, at {found.speeds}" if found.speeds else name)
@@ -66,7 +71,7 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
     for each in found.orders:
         if each.shaft == "input" and each.significant:
             yield FileEstimate(
-                f"{AMPLITUDE} of order {each.order:g}",
+                f"{ERROR_AMPLITUDE} of order {each.order:g}",
                 "rad",
                 each.amplitude,
                 each.amplitude_sigma,
@@ -78,4 +83,54 @@ def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:
 
 def _why(found: TransmissionError) -> str:
     """Return why amplitudes are not those of the gear alone; empty if they are."""
-    return f"amplitudes are those measured at {found.speeds}: {CHANGING}" if found.vibrates else ""
+    return f"amplitudes are those measured at {found.speeds}: {WHY_AMPLITUDES_CHANGE}" if found.vibrates else ""
+
+
+def curves_of_orders(found: TransmissionError) -> Recording:
+    """Return the transmission error and its significant orders.
+
+    Returns:
+        time, or the input angle if there is no time; `transmission_error`; `modelled`, its significant orders; `residual`,
+        left by orders and loads; and `sigma`, the standard deviation of `modelled` by amplitudes and phases of the
+        input's orders, taken as independent
+    """
+    curves = found.curves
+    over = "time" if "time" in curves else "input_angle"
+    error, angle = curves["transmission_error"], curves["input_angle"]
+    variance = np.zeros_like(angle)
+    for each in found.orders:
+        if each.significant and each.shaft == "input":
+            phase = each.order * angle + each.phase
+            variance += (each.amplitude_sigma * np.sin(phase)) ** 2
+            variance += (each.amplitude * each.phase_sigma * np.cos(phase)) ** 2
+    columns = {over: curves[over], "transmission_error": error, "modelled": curves["kinematic_error"]}
+    columns |= {"residual": curves["residual"], "sigma": np.sqrt(variance)}
+    units = dict.fromkeys(columns, "rad") | {over: curves.unit(over)}
+    return Recording(columns, units)
+
+
+def picture_of_turn(found: TransmissionError) -> Picture:
+    """Return the picture of the transmission error over a turn of the input, its mean in each part of the turn.
+
+    Torque, direction and orders of the output are taken out, as far as the record determines them.
+    """
+    angle = np.mod(found.curves["input_angle"], 2.0 * np.pi)
+    measured = sum(_waves(found, found.curves["input_angle"]), found.curves["residual"])
+    place = (angle / (2.0 * np.pi) * TURN_BINS).astype(int) % TURN_BINS
+    filled = np.unique(place)
+    middle = (filled + 0.5) * 2.0 * np.pi / TURN_BINS
+    means = np.array([measured[place == each].mean() for each in filled])
+    columns = {
+        "input_angle": middle,
+        "transmission_error": means,
+        "modelled": sum(_waves(found, middle), np.zeros_like(middle)),
+    }
+    orders = tuple((each.order, each.amplitude, each.amplitude_sigma) for each in found.orders if each.shaft == "input")
+    title = "transmission error over a turn of the input"
+    return Picture(Recording(columns, dict.fromkeys(columns, "rad")), "turn", "transmission error", title, "", orders)
+
+
+def _waves(found: TransmissionError, angle: Array) -> list[Array]:
+    """Return the significant orders of the input at an angle of it."""
+    own = [each for each in found.orders if each.significant and each.shaft == "input"]
+    return [each.amplitude * np.sin(each.order * angle + each.phase) for each in own]

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from strainwave.identification.kinds.kind import Kind
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import ColumnRoles, first, measured, names_of
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.questions import QuestionError
 
@@ -34,8 +33,8 @@ class Vibration(Kind):
         side: Side = mapping.side or motion.channel.side or "input"
         why = f"its columns are {names_of([motion, *vibration.values()])}: {self.title}"
         assumed = "" if mapping.side or motion.channel.side else f"{motion.name} is taken for that of the motor"
-        found = {**first(columns, "time"), f"{side}_{motion.channel.quantity}": motion, **vibration}
-        return ColumnRoles(self.name, found, side, tuple(filter(None, (why, assumed))))
+        by_channel = {**first(columns, "time"), f"{side}_{motion.channel.quantity}": motion, **vibration}
+        return ColumnRoles(self.name, by_channel, side, tuple(filter(None, (why, assumed))))
 
     def fit(self, file: Recognised, known: GearSoFar) -> NoReturn:
         """

@@ -9,28 +9,28 @@ from numpy.typing import NDArray
 
 from strainwave import friction
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.steady_friction import MIN_MOVING_SPEED, Warming, friction_over_temperature
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
-from strainwave.identification.candidates.warming import Warming, friction_over_temperature
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_TORQUE, Left, error_left, only_if_explained
-from strainwave.identification.experiments.steady_motion import MIN_MOVING_SPEED
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate, FileResult, Picture
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.pictures import Picture
 from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
-EFFORTS = ("joint_torque", "input_torque", "current")
+EFFORT_CHANNELS = ("joint_torque", "input_torque", "current")
 MIN_CHANGE_SIGMA = 2.0  # beyond which friction changes with the temperature
 TEMPERATURE_CLASSES = 24  # in the figure
 MIN_SAMPLES_PER_CLASS = 10
-ONE_WAY = "it moves one way only: a weight and an offset are in its friction, and its relative fall is not determined"
+ONE_WAY_FALL = "it moves one way only: a weight and an offset are in its friction, and its relative fall is not determined"
 
 
 def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
     """Return friction over the temperature, and how it changes; None if a log does not determine it."""
     recording = file.recording
-    effort = next((name for name in EFFORTS if name in recording), None)
+    effort = next((name for name in EFFORT_CHANNELS if name in recording), None)
     if effort is None or "temperature" not in recording or np.ptp(recording["temperature"]) < MIN_TEMPERATURE_SPAN:
         return None
     speed = _speed(recording)
@@ -41,31 +41,31 @@ def warmed(file: Recognised) -> tuple[FileResult, Warming] | None:
         {"speed": "rad/s", "temperature": "K", effort: recording.unit(effort)},
     )
     try:
-        found = friction_over_temperature(series, effort)
+        warming = friction_over_temperature(series, effort)
     except ValueError:
         return None
-    fall, slope, level = found.fall, found.slope, found.friction
+    fall, slope, level = warming.fall, warming.slope, warming.friction
     sure = abs(fall.value) > MIN_CHANGE_SIGMA * fall.sigma
     why = "" if sure else "the friction does not change with the temperature beyond chance"
-    why = ONE_WAY if sure and found.one_way else why
+    why = ONE_WAY_FALL if sure and warming.one_way else why
     low, high = slope.interval(0.95)
     remarks: tuple[str, ...] = (
         f"friction over the temperature, of {effort.replace('_', ' ')}: {level.value:.4g} ± {level.sigma:.2g} {level.unit} at "
-        f"{_celsius(found.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
+        f"{_celsius(warming.reference_temperature)}; it changes by {slope.value:.3g} {slope.unit}, "
         f"with 95 % between {low:.3g} and {high:.3g}",
         "the log does not separate temperature from other changes in the same time, as wear-in or another task",
     )
-    if found.one_way:
-        remarks = (*remarks, ONE_WAY)
+    if warming.one_way:
+        remarks = (*remarks, ONE_WAY_FALL)
     estimates = (FileEstimate("gear.friction_input.dry_fall", "1/K", fall.value, fall.sigma, "thermal", why),)
-    curves = _curves(series, effort, found)
+    curves = _curves(series, effort, warming)
     means = curves[f"friction_of_{effort}"]
     left = Left(rms(means - curves["modelled"]), rms(means), level.unit, MAX_SHARE_OF_TORQUE)
     whole = error_left({"friction over the temperature": left}, file.path.name)
     return FileResult(
         file.path.name, file, "friction over the temperature", only_if_explained(estimates, whole), remarks, (whole,),
         pictures=(Picture(curves, "means"),),
-    ), found  # fmt: skip
+    ), warming  # fmt: skip
 
 
 def with_fall(known: GearSoFar, found: Warming, result: FileResult) -> tuple[GearSoFar, tuple[str, ...]]:

@@ -7,16 +7,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import compress
 
-import numpy as np
-
-from strainwave.files.labels import ColumnSource, places_of
+from strainwave.files.labels import places_of
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import measures
-from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
-from strainwave.identification.reading.column import Column
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import (
+    CHANNEL_ALIASES,
+    CHANNELS,
     QUANTITIES,
+    Channel,
     Meaning,
     is_of_joint,
     meaning,
@@ -25,18 +24,17 @@ from strainwave.identification.reading.names import (
     which_of,
     words_of,
 )
-from strainwave.identification.reading.roles import columns_for
+from strainwave.identification.reading.roles import Column, columns_for
 from strainwave.messages import listed, one_line, quoted
 from strainwave.questions import ALL_JOINTS, Answer, QuestionError
 
 MAX_JOINTS_OFFERED = 8  # by a question: more than an arm has are a humanoid's
-MIN_MOTION = 0.01  # of how far the joint moves that moves most: others that move by less rest
-SEVERAL = ("other_angles", "regressors")  # channels that may be several columns
-EXCHANGEABLE = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
-MEASURED = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
-EFFORTS = ("torque", "current")  # quantities
+LISTED_CHANNELS = ("other_angles", "regressors")  # channels that may be several columns
+EITHER_QUANTITY = (("angle", "speed"), ("torque", "current", "voltage"))  # quantities of which a joint needs one
+MEASURED_WORDS = {"act", "actual", "meas", "measured", "ist", "istwert", "msr"}  # words of what was measured
+EFFORT_KINDS = ("torque", "current")  # quantities
 USUAL_FIRST = ("time", "temperature", "vibration")  # of which the first column is taken, if a file has several
-CURRENT, TORQUE = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
+CURRENT_WORDS, TORQUE_WORDS = set(QUANTITIES["current"]), set(QUANTITIES["torque"])
 
 
 def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[str]]:
@@ -48,49 +46,21 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
         the columns, and what was decided between duplicates
     """
     by_user = _by_user(table, mapping)
-    named = _of_one_time(_by_name(table, mapping, by_user))
+    named = by_name(table, mapping, by_user)
+    times = [column for column in named if column.channel.quantity == "time"]
+    time = next((column for column in times if not column.which), times[0] if times else None)
+    named = [replace(each, which="") if each is time else each for each in named if each not in times or each is time]
     own, remarks = _one_effort(named if mapping.joint is not None else _beside(by_user, named))
-    found = by_user + _of_one_joint(table, own, mapping, by_user)
-    is_stated = any(column.channel.quantity in EFFORTS for column in by_user)
-    names = set[str]() if is_stated else {column.name for column in found}
-    return found, [remark for name, remark in remarks.items() if name in names]
-
-
-def moving_joints(table: OpenTable, mapping: FileMapping) -> list[str]:
-    """Return the joints whose angles change, of a file with several of which a person named none."""
-    spans = spans_of_joints(table, mapping)
-    least = MIN_MOTION * max(spans.values(), default=0.0)
-    return [which for which, span in spans.items() if span > 0.0 and span >= least]
-
-
-def spans_of_joints(table: OpenTable, mapping: FileMapping) -> dict[str, float]:
-    """Return how far each joint moves, in its unit in the file, of a file with several of which a person named none."""
-    if mapping.joint is not None or "output_angle" in mapping.columns or "input_angle" in mapping.columns:
-        return {}
-    groups = dict[Channel, dict[str, int]]()
-    for column in _by_name(table, mapping):
-        if column.channel.quantity == "angle" and column.channel.measured and column.which:
-            angles = groups.setdefault(column.channel, {})
-            if column.which in angles:
-                return {}
-            angles[column.which] = column.position
-    angles = max(groups.values(), key=len, default={})
-    if len(angles) < 2:
-        return {}
-    numbers, _ = table.measured([ColumnSource(place, which, which, "1") for which, place in angles.items()])
-    return {which: float(np.ptp(there)) for which, each in numbers.items() if (there := each[np.isfinite(each)]).size}
-
-
-def numbered_joint(table: OpenTable) -> list[str]:
-    """Return the number of the joint that all angles have in their names, as q7; empty if they have none, or several."""
-    found = {column.which for column in _by_name(table, FileMapping()) if column.channel.quantity == "angle"}
-    return sorted(found) if len(found) == 1 and all(each.isdigit() for each in found) else []
+    columns = by_user + _of_one_joint(table, own, mapping, by_user)
+    is_stated = any(column.channel.quantity in EFFORT_KINDS for column in by_user)
+    names = set[str]() if is_stated else {column.name for column in columns}
+    return columns, [remark for name, remark in remarks.items() if name in names]
 
 
 # ---- By their names --------------------------------------------------------------------------------------------------
 
 
-def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
+def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
     """Return the columns with a known name, but for channels that a person named."""
     taken = {column.position for column in by_user}
     columns = []
@@ -107,7 +77,9 @@ def _by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] =
         if not any(column.channel == channel and column.own for column in by_user):
             unit = "s" if content == "dates" else found.unit or label.unit or None
             columns.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
-    return _numbered_apart(_without_estimates(_of_measured_structure(columns)))
+    columns = _of_measured_structure(columns)
+    certain = {(column.channel, column.which) for column in columns if not column.estimated}
+    return _numbered_apart([each for each in columns if not each.estimated or (each.channel, each.which) not in certain])
 
 
 def _meanings(table: OpenTable, mapping: FileMapping) -> list[Meaning | None]:
@@ -125,15 +97,9 @@ def _of_measured_structure(columns: Sequence[Column]) -> list[Column]:
     """Return the columns; of a channel in several structures those of the ones with measured values, as `rec.act_pos`."""
     structures = [re.sub(r"\d+", "", column.name.rpartition(".")[0]) for column in columns]
     pairs = list(zip(columns, structures, strict=True))
-    measured = {structure for column, structure in pairs if set(words_of(column.name)) & MEASURED}
+    measured = {structure for column, structure in pairs if set(words_of(column.name)) & MEASURED_WORDS}
     channels = {column.channel for column, structure in pairs if structure in measured}
     return [column for column, structure in pairs if structure in measured or column.channel not in channels]
-
-
-def _without_estimates(columns: Sequence[Column]) -> list[Column]:
-    """Return the columns without estimates of what another one contains."""
-    own = {(column.channel, column.which) for column in columns if not column.estimated}
-    return [column for column in columns if not column.estimated or (column.channel, column.which) not in own]
 
 
 def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
@@ -148,16 +114,9 @@ def _numbered_apart(columns: Sequence[Column]) -> list[Column]:
     return [replace(column, which=".".join(each) or column.which) for column, each in zip(columns, own, strict=True)]
 
 
-def _of_one_time(columns: Sequence[Column]) -> list[Column]:
-    """Return the columns with one time: the first whose name has no further word, or the first."""
-    times = [column for column in columns if column.channel.quantity == "time"]
-    taken = next((column for column in times if not column.which), times[0] if times else None)
-    return [replace(each, which="") if each is taken else each for each in columns if each not in times or each is taken]
-
-
 def _beside(by_user: Sequence[Column], named: Sequence[Column]) -> list[Column]:
     """Return the named columns, without those of several joints whose channel or a like one a person named."""
-    taken = {group for group in EXCHANGEABLE for column in by_user if column.channel.quantity in group and column.own}
+    taken = {group for group in EITHER_QUANTITY for column in by_user if column.channel.quantity in group and column.own}
     quantities = {quantity for group in taken for quantity in group}
     channels = [column.channel for column in named]
     return [each for each in named if each.channel.quantity not in quantities or channels.count(each.channel) == 1]
@@ -169,13 +128,15 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
     The torque of the motor contains the friction of the gear, that of a sensor behind the gear does not. So a torque from the
     current goes before a current, and this before any other torque.
     """
-    efforts = [each for each in columns if each.channel.quantity in EFFORTS and each.channel.measured]
+    efforts = [each for each in columns if each.channel.quantity in EFFORT_KINDS and each.channel.measured]
     efforts = [each for each in efforts if each.channel.side is None and each.own and not each.by_user]
     taken, remarks = list(columns), dict[str, str]()
     for joint in dict.fromkeys(column.which for column in efforts):
         several = [column for column in efforts if column.which == joint]
         words = {column.position: set(words_of(column.name)) for column in several}
-        from_current = [each for each in several if words[each.position] & CURRENT and words[each.position] & TORQUE]
+        from_current = [
+            each for each in several if words[each.position] & CURRENT_WORDS and words[each.position] & TORQUE_WORDS
+        ]
         others = [column for column in several if column not in from_current]
         currents = [column for column in others if column.channel.quantity == "current"]
         first = from_current if from_current and others else currents if len(others) - len(currents) > 1 else []
@@ -202,10 +163,12 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
         QuestionError: it has one for each joint
     """
     found = []
-    wanted = [(name, each) for name, each in mapping.columns.items() if name not in SEVERAL]
-    wanted += [(name, each.strip()) for name in SEVERAL for each in mapping.columns.get(name, "").split(",") if each.strip()]
+    wanted = [(name, each) for name, each in mapping.columns.items() if name not in LISTED_CHANNELS]
+    wanted += [
+        (name, each.strip()) for name in LISTED_CHANNELS for each in mapping.columns.get(name, "").split(",") if each.strip()
+    ]
     for name, column in wanted:
-        place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[ALIASES.get(name, name)]
+        place, channel = _place_of(table, name, column, mapping.joint), CHANNELS[CHANNEL_ALIASES.get(name, name)]
         label, by_name = table.labels[place], meaning(table.labels[place])
         by_name_unit = by_name.unit if by_name and by_name.quantity == channel.quantity else None
         unit = label.unit or by_name_unit or unit_in(label.name, channel.quantity)

@@ -29,8 +29,7 @@ from strainwave import arguments, questions
 from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit, convert
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.channels import ALIASES, CHANNELS
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, Side
 from strainwave.messages import nearest_of, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
 
@@ -57,8 +56,8 @@ CONSTANTS = {
 }
 MAX_NAMED = 100  # columns of one channel, as of other_angles
 MAX_PATTERNS = 1000  # of file names: each file is compared with each
-TABLES = ("columns", "units", "sign", "constants")  # of a section
-WILD = "*?[."  # a section with one of these in its name is a pattern of file names
+TABLE_ENTRIES = ("columns", "units", "sign", "constants")  # of a section
+PATTERN_CHARACTERS = "*?[."  # a section with one of these in its name is a pattern of file names
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ class FileMapping:
     joint: str | None = None
 
     def __post_init__(self) -> None:
-        channels = {**CHANNELS, **ALIASES}
+        channels = {**CHANNELS, **CHANNEL_ALIASES}
         for what, names in (("column", self.columns), ("sign", self.sign)):
             for name in names:
                 _check_known(f"--{what} {name}", name, channels, "channels")
@@ -158,7 +157,9 @@ class MappingFile:
         with at(f"{path}"):
             whole = document(Path(path))
         try:
-            patterns = {name: each for name, each in whole.items() if isinstance(each, dict) and set(name) & set(WILD)}
+            patterns = {
+                name: each for name, each in whole.items() if isinstance(each, dict) and set(name) & set(PATTERN_CHARACTERS)
+            }
             if len(patterns) > MAX_PATTERNS:
                 raise ValueError(f"has {len(patterns)} patterns of file names; at most {MAX_PATTERNS} are read")
             general = _mapping("", {name: each for name, each in whole.items() if name not in patterns})
@@ -177,7 +178,7 @@ def _mapping(place: str, section: Mapping[str, Any]) -> FileMapping:
     found: dict[str, Any] = {}
     for name, value in section.items():
         _check_known(f"{place}{name}", name, known, "keys")
-        if name not in TABLES:
+        if name not in TABLE_ENTRIES:
             found[name] = _entry(f"{place}{name}", name, value)
         elif isinstance(value, dict):
             found[name] = {key: _entry(f"{place}{name}.{key}", name, each) for key, each in value.items()}

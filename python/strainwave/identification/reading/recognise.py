@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,43 +14,39 @@ from strainwave.files.array_table import ArrayTable
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
-from strainwave.files.units import convert
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.angles import jumps, renewed_rows, unwrapped
-from strainwave.identification.reading.channels import ALIASES, CHANNELS
-from strainwave.identification.reading.clock import clock, regular
-from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.columns import (
-    USUAL_FIRST,
-    chosen,
-    moving_joints,
-    numbered_joint,
-    spans_of_joints,
-    which_joint,
-)
-from strainwave.identification.reading.layout import interleaved, nameless
+from strainwave.identification.reading.answers import in_usual_way, with_answers_that_work
+from strainwave.identification.reading.columns import chosen
+from strainwave.identification.reading.joints import with_joint
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping
-from strainwave.identification.reading.missing_units import other_units
-from strainwave.identification.reading.name_of_file import joint_in, speed_in
-from strainwave.identification.reading.names import Side, meaning, which_of, words_of
-from strainwave.identification.reading.roles import ColumnRoles, names_of
-from strainwave.identification.reading.slopes import MAX_OFF_SPEED, speed_per_slope
+from strainwave.identification.reading.motion import MAX_OFF_SPEED, jumps, renewed_rows, speed_per_slope, unwrapped
+from strainwave.identification.reading.names import (
+    CHANNEL_ALIASES,
+    CHANNELS,
+    Side,
+    joint_in,
+    meaning,
+    speed_in,
+)
+from strainwave.identification.reading.roles import Column, ColumnRoles, names_of
 from strainwave.identification.reading.source import MeasurementFile, files_of_same_recording, measurement_file
-from strainwave.identification.reading.values import misspelt_units, read
+from strainwave.identification.reading.times import clock, regular
+from strainwave.identification.reading.units import other_units
+from strainwave.identification.reading.unnamed import interleaved, nameless
+from strainwave.identification.reading.values import misspelt_units, values_of
 from strainwave.messages import listed, one_line, quoted
 from strainwave.presentation import Presented
-from strainwave.questions import ALL_JOINTS, LOG_AT_RATE, Answer, QuestionError
+from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 
 Array = NDArray[np.float64]
 
-MAX_ANSWERS = 18  # of one question: two for each of eight joints, and for all
-MAX_ANSWERS_OF_JOINTS = 9  # of a question about more than the joint; beyond, the answers of one joint are shown
-MIN_MOTION = 0.02  # rad: another joint that moves by less rests
-RATES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")  # Hz
-STEPS = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
-SINGLES = "single numbers, not used: "
-REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
+MIN_NEIGHBOUR_MOTION = 0.02  # rad: another joint that moves by less rests
+# Hz.
+RATE_NAMES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")
+STEP_NAMES = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
+UNUSED_NUMBERS = "single numbers, not used: "
+OF_REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
 
 
 @dataclass(frozen=True)
@@ -110,11 +106,11 @@ class Recognised(Presented):
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
         recording = self.recording
-        if not REFLECTED.keys() & set(recording.names):
+        if not OF_REFLECTED.keys() & set(recording.names):
             return self
-        names = sorted(recording.names, key=lambda name: name in REFLECTED)
-        series = {REFLECTED.get(name, name): recording[name] * (ratio if name in REFLECTED else 1.0) for name in names}
-        units = {REFLECTED.get(name, name): recording.unit(name) for name in names}
+        names = sorted(recording.names, key=lambda name: name in OF_REFLECTED)
+        series = {OF_REFLECTED.get(name, name): recording[name] * (ratio if name in OF_REFLECTED else 1.0) for name in names}
+        units = {OF_REFLECTED.get(name, name): recording.unit(name) for name in names}
         return replace(self, recording=Recording(series, units, recording.title))
 
 
@@ -140,153 +136,65 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
     its columns are Drehzahl and Reibmoment, 3 rows in no order of time: a table of steady friction
     it reaches 1200 1/min, so it was measured at the input
     """
-    source, given = measurement_file(file), mapping or FileMapping()
+    source, stated = measurement_file(file), mapping or FileMapping()
+    read = partial(_as_stated, source)
     try:
-        read = _as_read(source, given)
-        if read.kind == "effort" and (question := misspelt_units(source.table, given)):
+        recognised = in_usual_way(read, stated)
+        if recognised.kind == "effort" and (question := misspelt_units(source.table, stated)):
             raise question
-        return read
+        return recognised
     except QuestionError as question:
-        raise _with_answers_that_work(source, given, misspelt_units(source.table, given) or question) from None
+        misspelt = misspelt_units(source.table, stated)
+        raise with_answers_that_work(source, stated, misspelt or question, read) from None
 
 
-def _as_read(source: MeasurementFile, given: FileMapping) -> Recognised:
-    """Return a file as it is read, with the ways to read it that a fit may decide between; raises as `recognise`."""
-    try:
-        return _recognised(source, given)
-    except QuestionError as question:
-        if question.by_fit:
-            with suppress(ValueError):  # an answer leads to a further question, or works not at all
-                return _with_ways(source, given, question)
-        raise
+def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
+    """Return a file as it is read: columns, their values in SI units, their roles, the recording; raises as `recognise`."""
+    table = source.table
+    mapping, of_numbers = _with_single_numbers(table, stated)
+    mapping, of_joint = with_joint(source, mapping)
+    _check_parts(source)
+    _check_named_effort(source, mapping)
 
-
-def _with_ways(source: MeasurementFile, given: FileMapping, question: QuestionError) -> Recognised:
-    """Return a file in the usual way that answers a question, with the others as alternatives."""
-    ways = list[Answer]()
-    for answer in question.answers:
-        read = _recognised(source, given.updated(FileMapping(**answer.given)))
-        ways += [answer, *(each.after(answer) for each in read.alternatives)]
-    first, usual = ways[0], _recognised(source, given.updated(FileMapping(**ways[0].given)))
-    other = next(each for each in ways if each.given["side"] != usual.side)
-    assumed = f"no name or number determines the side: {usual.side} is taken; otherwise add --side {other.given['side']}"
-    ways = [each for each in ways if each is not first]
-    return replace(usual, alternatives=tuple(ways), question=question, remarks=(assumed, *usual.remarks))
-
-
-def _with_answers_that_work(source: MeasurementFile, given: FileMapping, question: QuestionError) -> QuestionError:
-    """Return a question with those of its answers with which the file can be read, each with what it is then.
-
-    An answer that leads to a further question is replaced by the answers to both, so that one command answers all.
-    """
-    answers, why_not = list[Answer](), ""
-    for answer in question.answers:
-        try:
-            answers += _ways_on(source, given, answer, question)
-        except ValueError as error:
-            why_not = why_not or f"; not {answer.label}: {error}"
-    fault = question.question if answers else f"{question.question}{why_not}"
-    groups = dict[str, list[Answer]]()
-    for answer in answers:
-        groups.setdefault(_but_for_joint(answer), []).append(answer)
-    answers = [answer for group in groups.values() for answer in group]
-    if len(answers) > MAX_ANSWERS_OF_JOINTS and 1 < len(groups) < len(answers):
-        moved = spans_of_joints(source.table, given)
-        answers = [max(group, key=lambda each: moved.get(each.given.get("joint", ""), 0.0)) for group in groups.values()]
-        fault += f"; the joint that moves most is shown, and the others are {listed([*moved, ALL_JOINTS])}"
-    fault += f"; the first {MAX_ANSWERS} of {len(answers)} answers are" if len(answers) > MAX_ANSWERS else ""
-    return QuestionError(one_line(fault), answers[:MAX_ANSWERS]).of(source.table.file)
-
-
-def _but_for_joint(answer: Answer) -> str:
-    """Return what an answer states besides the joint."""
-    return str({**answer.given, "joint": None})
-
-
-def _ways_on(
-    source: MeasurementFile,
-    given: FileMapping,
-    answer: Answer,
-    question: QuestionError,
-    answered: frozenset[tuple[str, str]] = frozenset(),
-) -> list[Answer]:
-    """Return an answer with what a file is then; with each answer to the question that follows, if one does.
-
-    None if it is an answer to what was `answered` before: units of a time that no unit makes right lead in a circle.
-
-    Raises:
-        ValueError: the file cannot be read so
-    """
-    mapping = given.updated(FileMapping(**answer.given))
-    if answer.files or mapping == given or not answer.stated.isdisjoint(answered):
-        return [answer] if answer.files else []
-    if mapping.joint == ALL_JOINTS:
-        of_first = [Answer(answer.label, {**answer.given, "joint": joint}) for joint in joints_of(source, given)[:1]]
-        ways = [way for first in of_first for way in _ways_on(source, given, first, question, answered)]
-        return [replace(each, given={**each.given, "joint": ALL_JOINTS}, gives="") for each in ways]
-    answered |= answer.stated
-    try:
-        return [replace(answer, gives=in_words(_as_read(source, mapping)))]
-    except QuestionError as following:
-        if following.question == question.question:
-            return []
-        ways = [way for each in following.answers for way in _ways_on(source, mapping, each, following, answered)]
-        return [way.after(answer) for way in ways]
-
-
-def in_words(file: Recognised, given: FileMapping | None = None) -> str:
-    """Return the kind of a file, and how large its motions and efforts are.
-
-    Args:
-        file: as it is read
-        given: channels and units of its columns, by their names in the file, in place of those that it is read with
-    """
-    given, recording = given or FileMapping(), file.recording
-    called = {column: channel for channel, column in given.columns.items()}
-    sizes = []
-    for name, column in file.columns.items():
-        if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST and name in recording:
-            size, channel = float(np.abs(recording[name]).max()), called.get(column, name)
-            if unit := given.units.get(column):
-                size = convert(convert(size, recording.unit(name), file.units[name]), unit, CHANNELS[channel].unit)
-            sizes.append(f"{channel} to {size:.3g} {CHANNELS[channel].unit if unit else recording.unit(name)}")
-    return f"{kind_named(file.kind).title}; {listed(sizes)}"
-
-
-def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
-    """Return a file as it is read; raises as `recognise`."""
-    table, stated = source.table, given
-    given, of_file = _with_file(source, given)
-    _check_named_effort(source, given)
-    columns, decided = chosen(table, given)
-    columns, of_values = read(table, columns, given)
-    given, by_name = _with_speed_of_name(columns, given, source.path)
-    roles = _roles_or_question(table, columns, given)
-    neighbours, regressors = _beside(columns, roles.kind)
+    columns, of_efforts = chosen(table, mapping)
+    columns, of_values = values_of(table, columns, mapping)
+    mapping, by_file_name = _with_speed_of_name(columns, mapping, source.path)
+    roles = _roles_or_question(table, columns, mapping)
+    is_log = roles.kind == "log"
+    moving = [each for each in columns if each.neighbour and is_log and np.ptp(each.si) > MIN_NEIGHBOUR_MOTION]
+    neighbours = {f"angle_of_joint_{column.which}": column for column in moving}
+    regressors = {f"regressor {column.name}": column for column in columns if column.regressor}
     used = {**roles.columns, **neighbours, **regressors}
-    series = {name: column.si * (given.sign.get(name, 1) if column.own else 1) for name, column in used.items()}
-    remarks = [*of_file, *_of_joint(columns, given), *decided, *of_values, *roles.remarks, *_unwrap(table, series, used)]
+
+    series = {name: column.si * (mapping.sign.get(name, 1) if column.own else 1) for name, column in used.items()}
+    of_wraps = list(_unwrap(table, series, used))
     try:
-        series, in_time, began = _in_time(series, roles.columns, roles.kind, given)
+        series, of_time, began = _in_time(series, roles.columns, roles.kind, mapping)
     except QuestionError:
         raise
     except ValueError as error:
         raise ValueError(one_line(f"{table.file}: {error}")) from None
+
+    parts = source.parts if source.run is None else ()
+    remarks = [f"one recording in files of one quantity each: {listed(part.path.name for part in parts)}"] if parts else []
+    remarks += [*of_numbers, *of_joint]
+    if mapping.joint is not None and not any(column.which for column in columns):
+        remarks.append(f"its columns name no joint: they are taken for those of joint {mapping.joint}")
     unused = _unused(table, list(used.values()))
-    left_out = (*table.left_out, *(each for each in of_file if each.startswith(SINGLES)), *_of_unused(unused.values()))
+    angle = next((roles.columns[name] for name in ("output_angle", "angle", "input_angle") if name in roles.columns), None)
     return Recognised(
         source.path,
         roles.kind,
         columns={name: column.name for name, column in roles.columns.items()},
         units={name: column.unit or "1" for name, column in roles.columns.items()},
         side=roles.side,
-        why=(*roles.why, *by_name),
-        remarks=(*remarks, *in_time, *_of_unused(unused.values())),
-        constants=dict(given.constants),
+        why=(*roles.why, *by_file_name),
+        remarks=(*remarks, *of_efforts, *of_values, *roles.remarks, *of_wraps, *of_time, *_of_unused(unused.values())),
+        constants=dict(mapping.constants),
         recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
         neighbours={column.which: name for name, column in neighbours.items()},
         regressors=tuple(regressors),
-        joint=_joint_of(roles.columns, source.path),
+        joint=(angle.which if angle is not None else "") or joint_in(source.path),
         texts=tuple(name for place, name in unused.items() if table.contents[place] == "other"),
         unnamed=tuple(unnamed.measured_columns(table, [column.position for column in columns])),
         began=began,
@@ -295,19 +203,23 @@ def _recognised(source: MeasurementFile, given: FileMapping) -> Recognised:
         is_of_robot=any(column.robot for column in roles.columns.values()),
         units_given=tuple(name for name, each in roles.columns.items() if each.sure and each.unit and not each.label.unit),
         units_assumed=tuple(name for name, each in roles.columns.items() if not each.sure),
-        left_out=left_out,
-        parts=tuple(part.path for part in source.parts if source.run is None),
+        left_out=(
+            *table.left_out,
+            *(remark for remark in of_numbers if remark.startswith(UNUSED_NUMBERS)),
+            *_of_unused(unused.values()),
+        ),
+        parts=tuple(part.path for part in parts),
     )
 
 
-def _roles_or_question(table: OpenTable, columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
+def _roles_or_question(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     """Return the kind of a file, and the channel of each column.
 
     Raises:
         QuestionError: several are possible, or none; then it is asked which of the columns without a known name is one
     """
     try:
-        return _roles([column for column in columns if column.own], given)
+        return _roles([column for column in columns if column.own], mapping)
     except QuestionError as question:
         if question.answers:
             raise
@@ -315,30 +227,20 @@ def _roles_or_question(table: OpenTable, columns: Sequence[Column], given: FileM
         if unnamed.is_frequency_response(table):
             why = "it is a frequency response, which is not read: give the record in time from which it was computed"
             raise QuestionError(f"{why}{left}") from None
-        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, given.kind)) from None
+        raise QuestionError(f"{question.question}{left}", unnamed.answers(table, columns, mapping.kind)) from None
 
 
-def _beside(columns: Sequence[Column], kind: str) -> tuple[dict[str, Column], dict[str, Column]]:
-    """Return the angles of other joints that move beside that of a log, and the torques of which unknown shares act."""
-    neighbours = {
-        f"angle_of_joint_{column.which}": column
-        for column in columns
-        if column.neighbour and kind == "log" and np.ptp(column.si) > MIN_MOTION
-    }
-    return neighbours, {f"regressor {column.name}": column for column in columns if column.regressor}
-
-
-def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
+def _roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
     """Return the kind of a set of columns, and the channel of each; the kinds that need most are asked first.
 
     Raises:
         QuestionError: several kinds or channels are possible, or none
     """
-    if given.kind is not None:
-        return kind_named(given.kind).roles(columns, given)
+    if mapping.kind is not None:
+        return kind_named(mapping.kind).roles(columns, mapping)
     kinds = [kind_named(name) for name in KINDS]
-    if (kind := next((each for each in reversed(kinds) if each.recognises(columns, given)), None)) is not None:
-        return kind.roles(columns, given)
+    if (kind := next((each for each in reversed(kinds) if each.recognises(columns, mapping)), None)) is not None:
+        return kind.roles(columns, mapping)
     needs = "; ".join(f"{each.needs} for {each.name}" for each in kinds if each.needs)
     unknown = f"it has {names_of(columns)}, which is no measurement that is known: it needs {needs}"
     raise QuestionError(unknown)
@@ -346,7 +248,7 @@ def _roles(columns: Sequence[Column], given: FileMapping) -> ColumnRoles:
 
 def _other_units(columns: Sequence[Column], roles: Mapping[str, Column]) -> tuple[Answer, ...]:
     """Return other units of the channels without one, if their numbers fit them as well."""
-    names = {each.position: each.name if name in REFLECTED else name for name, each in roles.items()}
+    names = {each.position: each.name if name in OF_REFLECTED else name for name, each in roles.items()}
     ways = []
     for units in other_units([column for column in columns if column.own and column.position in names]):
         by_name = {names[place]: unit for place, unit in units.items()}
@@ -367,47 +269,17 @@ def _of_unused(names: Collection[str]) -> list[str]:
 # ---- What a file adds to its mapping ---------------------------------------------------------------------------------
 
 
-def _with_file(source: MeasurementFile, given: FileMapping) -> tuple[FileMapping, list[str]]:
-    """Return the mapping with the rate and the joint that the file determines; and what determines them, and its parts."""
-    given, of_numbers = _with_single_numbers(source.table, given)
-    given, of_joint = _with_joint(source, given)
-    is_of_parts = source.parts and source.run is None
-    parts = [f"one recording in files of one quantity each: {listed(part.path.name for part in source.parts)}"] * bool(
-        is_of_parts
-    )
-    return given, [*parts, *of_numbers, *of_joint]
-
-
-def _of_joint(columns: Sequence[Column], given: FileMapping) -> list[str]:
-    """Return the remark on a joint that is asked for of columns that name none."""
-    if given.joint is None or any(column.which for column in columns):
-        return []
-    return [f"its columns name no joint: they are taken for those of joint {given.joint}"]
-
-
-def _check_named_effort(source: MeasurementFile, given: FileMapping) -> None:
-    """Ask for the torque or current of columns without names, whose layout contains the motion alone.
+def _check_parts(source: MeasurementFile) -> None:
+    """Refuse one file of a recording that has several, and files in which the numbers of several joints follow each other.
 
     Raises:
-        QuestionError: no one named it; names the options
+        QuestionError: it is one; states the other files, or how to convert it
     """
-    _check_not_interleaved(source.parts or (source,))
-    if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
-        together = Answer("the files of the recording together", files=tuple(map(str, others)))
-        raise QuestionError("it has one quantity of a recording", [together])
-    named, layout = {CHANNELS[ALIASES.get(name, name)].quantity for name in given.columns}, source.layout
-    if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
-        is_timed = "rate" in given.constants or any(label.name == "time" for label in source.table.labels)
-        raise layout.question(is_timed=is_timed)
-
-
-def _check_not_interleaved(parts: Sequence[MeasurementFile]) -> None:
-    """Refuse files of one column without a name in which the numbers of several joints follow each other.
-
-    Raises:
-        QuestionError: there are such files; states how to convert them
-    """
-    joints = {part.path.name: count for part in parts if (count := _joints_in_one_column(part))}
+    joints = dict[str, int]()
+    for part in source.parts or (source,):
+        if len(part.raw.labels) == 1 and nameless(part.raw):
+            numbers, _ = part.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
+            joints |= {part.path.name: count} if (count := interleaved(numbers["numbers"])) else {}
     if joints:
         count = max(joints.values())
         rows = f"np.savetxt('rows-' + name, np.loadtxt(name).reshape(-1, {count}))"
@@ -415,109 +287,55 @@ def _check_not_interleaved(parts: Sequence[MeasurementFile]) -> None:
             f"the numbers of {count} joints follow each other in one column; write a row for each sample, as with "
             f'python -c "import numpy as np; [{rows} for name in {list(joints)}]", and take the files with rows'
         )
+    if source.is_of_one_quantity and not source.parts and (others := files_of_same_recording(source.path)):
+        together = Answer("the files of the recording together", files=tuple(map(str, others)))
+        raise QuestionError("it has one quantity of a recording", [together])
 
 
-def _joints_in_one_column(part: MeasurementFile) -> int:
-    """Return the number of joints whose numbers follow each other in a file of one column without a name; 0 if of one."""
-    if len(part.raw.labels) != 1 or not nameless(part.raw):
-        return 0
-    numbers, _ = part.raw.measured([ColumnSource(0, "numbers", "numbers", "1")])
-    return interleaved(numbers["numbers"])
+def _check_named_effort(source: MeasurementFile, mapping: FileMapping) -> None:
+    """Ask for the torque or current of columns without names, whose layout contains the motion alone.
+
+    Raises:
+        QuestionError: no one named it; names the options
+    """
+    named, layout = {CHANNELS[CHANNEL_ALIASES.get(name, name)].quantity for name in mapping.columns}, source.layout
+    if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
+        is_timed = "rate" in mapping.constants or any(label.name == "time" for label in source.table.labels)
+        raise layout.question(is_timed=is_timed)
 
 
-def _with_single_numbers(table: OpenTable, given: FileMapping) -> tuple[FileMapping, list[str]]:
+def _with_single_numbers(table: OpenTable, mapping: FileMapping) -> tuple[FileMapping, list[str]]:
     """Return the mapping, with the rate of rows without time if a single number in the file is one; and remarks."""
     singles = dict(table.singles) if isinstance(table, ArrayTable) else {}
-    timed = "time" in given.columns or any((found := meaning(label)) and found.quantity == "time" for label in table.labels)
+    timed = "time" in mapping.columns or any((found := meaning(label)) and found.quantity == "time" for label in table.labels)
     remarks = []
     rates = {name: rate for name, value in singles.items() if (rate := _rate(name.rpartition(".")[2].casefold(), value))}
-    if rates and not timed and "rate" not in given.constants:
+    if rates and not timed and "rate" not in mapping.constants:
         name, rate = next(iter(rates.items()))
         remarks.append(f"{name} = {singles.pop(name):g} is taken for the rate of its rows: {rate:g} Hz")
-        given = given.updated(FileMapping(constants={"rate": rate}))
+        mapping = mapping.updated(FileMapping(constants={"rate": rate}))
     if singles:
-        remarks.append(f"{SINGLES}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
-    return given, remarks
+        remarks.append(f"{UNUSED_NUMBERS}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
+    return mapping, remarks
 
 
 def _rate(name: str, value: float) -> float | None:
     """Return the rate of rows [Hz] that a number of this name is; None if it is none."""
     highest = CONSTANTS["rate"].high
-    if name in RATES and 1.0 <= value <= highest:
+    if name in RATE_NAMES and 1.0 <= value <= highest:
         return value
-    return 1.0 / value if name in STEPS and 1.0 / highest <= value < 1.0 else None
+    return 1.0 / value if name in STEP_NAMES and 1.0 / highest <= value < 1.0 else None
 
 
-def _with_speed_of_name(columns: Sequence[Column], given: FileMapping, path: Path) -> tuple[FileMapping, tuple[str, ...]]:
+def _with_speed_of_name(columns: Sequence[Column], mapping: FileMapping, path: Path) -> tuple[FileMapping, tuple[str, ...]]:
     """Return the mapping, with the speed in the name of a file whose columns contain no motion; and what determines it."""
     known = {column.channel.quantity for column in columns if column.channel.measured}
-    moves = known & {"time", "speed"} or given.constants.keys() & {"rate", "speed"} or given.kind not in (None, "effort")
+    moves = known & {"time", "speed"} or mapping.constants.keys() & {"rate", "speed"} or mapping.kind not in (None, "effort")
     speed = None if moves or not known & {"torque", "current"} else speed_in(path)
     if speed is None:
-        return given, ()
+        return mapping, ()
     why = f"by its name it turned at {speed:.4g} rad/s; otherwise add --constant speed=NUMBER"
-    return given.updated(FileMapping(constants={"speed": speed})), (why,)
-
-
-# ---- Joints ----------------------------------------------------------------------------------------------------------
-
-
-def joints_of(file: str | Path | MeasurementFile, mapping: FileMapping | None = None) -> tuple[str, ...]:
-    """Return the joints that move in a file, by their names in it; the one that its columns or its own name contain.
-
-    Args:
-        file, mapping: as of `recognise`
-
-    Raises:
-        ValueError: the file cannot be read
-    """
-    source = measurement_file(file)
-    moving, named = moving_joints(source.table, mapping or FileMapping()), joint_in(source.path)
-    if named and (named in moving or not moving):
-        return (named,)
-    return tuple(moving or numbered_joint(source.table))
-
-
-def check_one_joint(files: Sequence[Recognised]) -> None:
-    """Refuse files of several joints, as each joint has a gear of its own.
-
-    Raises:
-        ValueError: the names of files or columns contain several numbers of joints
-    """
-    joints = dict[str, str]()
-    for file in files:
-        if file.joint.isdigit():
-            joints.setdefault(file.joint, file.path.name)
-    if len(joints) > 1:
-        which = listed(f"{name} of joint {joint}" for joint, name in joints.items())
-        raise which_joint(one_line(f"each joint has a gear of its own, but {which}"), sorted(joints))
-
-
-def _joint_of(columns: Mapping[str, Column], path: Path) -> str:
-    """Return the joint by the name of its column, or by that of the file."""
-    angle = next((columns[name] for name in ("output_angle", "angle", "input_angle") if name in columns), None)
-    return (angle.which if angle is not None else "") or joint_in(path)
-
-
-def _with_joint(source: MeasurementFile, given: FileMapping) -> tuple[FileMapping, list[str]]:
-    """Return the mapping, with the joint in the name of the file, or the one that alone moves; and what determines it.
-
-    Raises:
-        ValueError: another joint is asked for than the one in the name of the file
-    """
-    moving, named = moving_joints(source.table, given), joint_in(source.path)
-    of_another = given.joint is not None and named and (which_of(words_of(given.joint)) or given.joint) != named
-    if of_another and not moving_joints(source.table, FileMapping()):
-        raise ValueError(one_line(f"{source.table.file}: by its name it is of joint {named}, and not of joint {given.joint}"))
-    if named in moving and len(moving) > 1:
-        others = [joint for joint in moving if joint != named]
-        return replace(given, joint=named), [
-            f"joint {named} is taken, which its name contains, while {listed(others)} move too; "
-            f"otherwise add --joint {others[0]}"
-        ]
-    if len(moving) == 1:
-        return replace(given, joint=moving[0]), [f"joint {moving[0]} alone moves, and is taken"]
-    return given, []
+    return mapping.updated(FileMapping(constants={"speed": speed})), (why,)
 
 
 # ---- Motion and time -------------------------------------------------------------------------------------------------
@@ -536,7 +354,7 @@ def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Co
 
 
 def _in_time(
-    series: dict[str, Array], columns: Mapping[str, Column], kind: str, given: FileMapping
+    series: dict[str, Array], columns: Mapping[str, Column], kind: str, mapping: FileMapping
 ) -> tuple[dict[str, Array], list[str], float]:
     """Return the rows of a recording in the order of time, remarks, and the stamp from which the time is counted [s].
 
@@ -546,8 +364,8 @@ def _in_time(
     if kind_named(kind).time == "none":
         return series, [], 0.0
     remarks = list[str]()
-    if "time" not in series and "rate" in given.constants:
-        when = regular(len(next(iter(series.values()))), given.constants["rate"])
+    if "time" not in series and "rate" in mapping.constants:
+        when = regular(len(next(iter(series.values()))), mapping.constants["rate"])
         series, remarks = {"time": when.time, **series}, list(when.remarks)
     if "time" not in series:
         if kind_named(kind).time == "needed":
@@ -556,7 +374,7 @@ def _in_time(
     if kind in ("log", "encoders"):
         series, of_rows = _renewed(series, columns)
         series, of_jumps = _of_one_recording(series, columns)
-        remarks += [*of_rows, *of_jumps, *_turn_speeds(series, columns, given)]
+        remarks += [*of_rows, *of_jumps, *_turn_speeds(series, columns, mapping)]
     others = {name: values for name, values in series.items() if name != "time"}
     repeated = np.zeros(len(series["time"]), bool)
     repeated[1:] = np.all([np.diff(values) == 0.0 for values in others.values()], axis=0)
@@ -599,11 +417,11 @@ def _of_one_recording(series: dict[str, Array], columns: Mapping[str, Column]) -
     return series, []
 
 
-def _turn_speeds(series: dict[str, Array], columns: Mapping[str, Column], given: FileMapping) -> Iterator[str]:
+def _turn_speeds(series: dict[str, Array], columns: Mapping[str, Column], mapping: FileMapping) -> Iterator[str]:
     """Turn the sign of speeds that are counted against their angle, if a person gave none; yield a remark of each."""
     for name, column in columns.items():
         angle = name.replace("speed", "angle")
-        if not name.endswith("_speed") or angle not in series or name in given.sign:
+        if not name.endswith("_speed") or angle not in series or name in mapping.sign:
             continue
         if abs(speed_per_slope(series[angle], series[name], series["time"]) + 1.0) < MAX_OFF_SPEED:
             series[name] = -series[name]

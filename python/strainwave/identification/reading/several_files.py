@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.motion_log import EFFORTS
-from strainwave.identification.reading.channels import CHANNELS
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.names import Side
+from strainwave.identification.reading.names import CHANNELS, Side
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.messages import listed
@@ -64,19 +63,19 @@ def _in_one_reading(group: Sequence[Recognised], opened: Mapping[Path, Measureme
             file,
             *(recognise(opened[file.path], file.mapping.updated(FileMapping(**each.given))) for each in file.alternatives),
         ]
-        readings[file.path] = {_reading(each): each for each in ways}
+        readings[file.path] = {_reading(way): way for way in ways}
     common = set[_Reading].intersection(*(set(readings[file.path]) for file in group if file.kind == usual))
     if len(common) != 1:
         return {}
     (one,) = common
     _, motions = one
     remark = f"in {', '.join(unit for _, unit in motions)}, as the other files with these columns allow nothing else"
-    found = dict[Path, Recognised]()
+    in_one = dict[Path, Recognised]()
     for file in group:
         own = readings[file.path]
-        same = own.get(one) or next((each for (_, moved), each in own.items() if moved == motions), file)
-        found[file.path] = replace(same, question=None, alternatives=(), remarks=(remark, *same.remarks))
-    return found
+        same = own.get(one) or next((way for (_, moved), way in own.items() if moved == motions), file)
+        in_one[file.path] = replace(same, question=None, alternatives=(), remarks=(remark, *same.remarks))
+    return in_one
 
 
 def _reading(file: Recognised) -> _Reading:

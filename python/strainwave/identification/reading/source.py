@@ -19,21 +19,22 @@ from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
 from strainwave.files.tables import FORMATS, is_table_of_numbers, open_table
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.layout import MatrixLayout, layout_of, nameless, rises_evenly
-from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, Quantity, is_of_joint, meaning
-from strainwave.identification.reading.slopes import is_slope
+from strainwave.identification.reading.motion import is_slope
+from strainwave.identification.reading.names import QUANTITY_OF, SYMBOLS, is_of_joint, meaning
 from strainwave.identification.reading.times import merged, runs_in, seconds_of, with_one_time
+from strainwave.identification.reading.unnamed import MatrixLayout, layout_of, nameless, rises_evenly
 from strainwave.messages import listed, one_line
+from strainwave.number_texts import is_number
 
 Array = NDArray[np.float64]
 
-SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
+QUANTITY_SUFFIXES = ("d", "dd", "dot", "ddot", "des", "desired", "cmd", "ref", "meas", "act")  # of a quantity in a name
 MAX_PARTS = 20  # files of one recording
-SETTINGS = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
+SETTINGS_SUFFIXES = {".json", ".jsonl"}  # seldom measurements: of a folder they are left out
 FILES_OF_RUNS = {".mat", ".npz", ".npy", ".json"}  # that may contain an array of recordings
-TEXTS = {".csv", ".txt", ".tsv", ".log"}  # that a recorder may go on writing when it is started again
-DUMPED = "data.log"  # with a count and a stamp in front of each row
-BAG = "metadata.yaml"  # a folder with this file is a recording of ROS
+RESTARTED_SUFFIXES = {".csv", ".txt", ".tsv", ".log"}  # that a recorder may go on writing when it is started again
+DUMPED_FILE = "data.log"  # with a count and a stamp in front of each row
+BAG_FILE = "metadata.yaml"  # a folder with this file is a recording of ROS
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,9 +118,13 @@ class MeasurementFile:
         if own is None or self.path.is_dir() or self.run is not None:
             return False
         try:
-            return nameless(self.raw) or _names_only(self.raw.labels, QUANTITY_OF.get(own[0].split("_")[0].casefold()))
+            if nameless(self.raw):
+                return True
+            quantity = QUANTITY_OF.get(own[0].split("_")[0].casefold())
+            named = {(channel := meaning(label)) and channel.quantity for label in self.raw.labels}
         except (ValueError, OSError):
             return False
+        return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
 
 
 class MeasurementFiles(NamedTuple):
@@ -161,19 +166,18 @@ def distinct_names(files: Sequence[MeasurementFile]) -> dict[Path, str]:
     """
     paths = list(dict.fromkeys(file.path for file in files))
     whole = [path.parts for path in paths]
-    return {path: Path(*own[-_parts_needed(own, whole) :]).as_posix() for path, own in zip(paths, whole, strict=True)}
-
-
-def _parts_needed(own: tuple[str, ...], all_parts: Sequence[tuple[str, ...]]) -> int:
-    """Return the number of last parts of a path that no other path has; all parts if another path ends with them."""
-    counts = (sum(other[-count:] == own[-count:] for other in all_parts) for count in range(1, len(own) + 1))
-    return next((count for count, alike in enumerate(counts, 1) if alike == 1), len(own))
+    names = dict[Path, str]()
+    for path in paths:
+        ends = (path.parts[-count:] for count in range(1, len(path.parts) + 1))
+        end = next((end for end in ends if sum(other[-len(end) :] == end for other in whole) == 1), path.parts)
+        names[path] = Path(*end).as_posix()
+    return names
 
 
 def _below(path: Path) -> FolderFiles:
-    if not path.is_dir() or Path(path, BAG).is_file():
+    if not path.is_dir() or Path(path, BAG_FILE).is_file():
         return FolderFiles([path], [])
-    files, links = files_below(path, FORMATS.keys() - SETTINGS, is_table_of_numbers)
+    files, links = files_below(path, FORMATS.keys() - SETTINGS_SUFFIXES, is_table_of_numbers)
     return FolderFiles(files or ([] if links else [path]), links)
 
 
@@ -184,7 +188,7 @@ def measurement_file(file: str | Path | MeasurementFile) -> MeasurementFile:
 
 def _with_runs(file: MeasurementFile) -> list[MeasurementFile]:
     """Return the recordings in a file: in an array of them, or in a text whose time begins anew."""
-    return file.runs if not file.parts and file.path.suffix.lower() in FILES_OF_RUNS | TEXTS else [file]
+    return file.runs if not file.parts and file.path.suffix.lower() in FILES_OF_RUNS | RESTARTED_SUFFIXES else [file]
 
 
 def _of_kind(kind: str, given: Measurement) -> MeasurementFile:
@@ -237,15 +241,9 @@ def files_of_same_recording(path: Path) -> list[Path]:
     return sorted(other for other in others if (found := _quantity_in(other)) and found[1] == own[1] and found[0] != own[0])
 
 
-def _names_only(labels: Sequence[Label], quantity: Quantity | None) -> bool:
-    """True if columns are channels of which each names this quantity, or beside a time none."""
-    named = {(found := meaning(label)) and found.quantity for label in labels}
-    return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
-
-
 def _named(path: Path) -> Path:
     """Return the path whose name states what a file contains: a dumper of YARP writes `data.log` into a folder of each port."""
-    return path.parent if path.name == DUMPED else path
+    return path.parent if path.name == DUMPED_FILE else path
 
 
 def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
@@ -254,7 +252,7 @@ def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
     for place, word in enumerate(words):
         plain, number = re.fullmatch(r"(.*?)(\d*)", word.casefold()).groups()  # type: ignore[union-attr]
         if plain in QUANTITY_OF or plain in SYMBOLS:
-            is_behind = place + 1 < len(words) and words[place + 1].casefold() in SUFFIXES
+            is_behind = place + 1 < len(words) and words[place + 1].casefold() in QUANTITY_SUFFIXES
             end = place + 1 + is_behind
             return "_".join(words[place:end]), (*words[:place], f"*{number}", *words[end:])
     return None
@@ -307,7 +305,7 @@ class _Part:
         units = [label.unit for label in table.labels]
         if QUANTITY_OF.get(name.casefold()) == "time":
             return _Part("time", series[:1], None, (), units[:1])
-        if file.path.name == DUMPED and len(series) > 2:
+        if file.path.name == DUMPED_FILE and len(series) > 2:
             return _Part(name, series[2:], series[1])
         if len(series) > 1 and rises_evenly(series[0]):
             return _Part(name, series[1:], series[0], (), units[1:])
@@ -335,3 +333,37 @@ class _Part:
     def stated(self) -> dict[str, str]:
         """The units that its header states, by the names of the columns."""
         return {name: unit for name, unit in zip(self.columns, self.units, strict=False) if unit}
+
+
+# ---- Files of other formats ------------------------------------------------------------------------------------------
+
+
+FORMAT_BY_BEGINNING = {
+    b"\x89PNG": "a picture (PNG)", b"\xff\xd8\xff": "a picture (JPEG)", b"GIF8": "a picture (GIF)", b"BM": "a picture (BMP)",
+    b"%PDF": "a PDF document", b"PK\x03\x04": "a ZIP archive, as spreadsheets are", b"\x1f\x8b": "packed (gzip)",
+    b"\xd0\xcf\x11\xe0": "an old Excel or Word file", b"<!DOCTYPE": "a web page", b"<html": "a web page",
+}  # fmt: skip
+MAX_BYTES_READ = 2048  # of the beginning
+TEXT_SUFFIXES = (".csv", ".txt", ".tsv", ".log", ".dat")
+
+
+def other_format(path: Path) -> str | None:
+    """Return what a file with the name of a table is by its first letters, and what to do; None if it may be a table."""
+    if path.suffix.lower() not in TEXT_SUFFIXES or not path.is_file():
+        return None
+    with path.open("rb") as file:
+        begin = file.read(MAX_BYTES_READ)
+    if separator := _other_separator(begin):
+        return f'its columns are separated by "{separator}": separate them by commas, semicolons or tabs'
+    found = next((what for letters, what in FORMAT_BY_BEGINNING.items() if begin.startswith(letters)), None)
+    what = f"its suffix is {path.suffix}, but it is {found}"
+    return None if found is None else f"{what}: export the measurement as CSV with one header line"
+
+
+def _other_separator(begin: bytes) -> str | None:
+    """Return a separator that tables are not read with, if the first two lines have it equally often, the second numbers."""
+    lines = [line for line in begin.decode("utf-8", "ignore").splitlines() if line.strip() and not line.startswith("#")][:2]
+    if len(lines) < 2 or any(each in line for line in lines for each in ",;\t"):
+        return None
+    separators = [each for each in "|:^~" if lines[0].count(each) == lines[1].count(each) > 0]
+    return next((each for each in separators if all(map(is_number, lines[1].split(each)))), None)

@@ -13,14 +13,11 @@ from strainwave.files.labels import ColumnSource, is_unit
 from strainwave.files.table_format import OpenTable
 from strainwave.files.units import convert, counts, is_share
 from strainwave.identification.reading import unnamed
-from strainwave.identification.reading.channels import ALIASES, CHANNELS, Channel
-from strainwave.identification.reading.column import Column
-from strainwave.identification.reading.incomplete_units import check_units, with_counts
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.missing_units import Assumed, units_of
-from strainwave.identification.reading.names import UNITS, meaning
-from strainwave.identification.reading.recorders import with_registers
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, UNITS, Channel, meaning
+from strainwave.identification.reading.roles import Column
 from strainwave.identification.reading.times import run_on
+from strainwave.identification.reading.units import Assumed, check_units, units_of, with_counts, with_registers
 from strainwave.messages import as_option, listed, one_line, quoted, unquoted
 from strainwave.questions import Answer, QuestionError
 
@@ -45,7 +42,7 @@ NEARLY_KNOWN = {name: (*OTHER_UNITS[name], *more) for name, more in (
 MAX_LISTED = 4  # names, if none is known
 
 
-def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
+def values_of(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
     """Return the columns with their values in SI units, and remarks of units and of what was left out."""
     if not table.labels:
         raise ValueError(one_line(f"{table.file} has no columns"))
@@ -79,12 +76,14 @@ def read(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> t
         remarks.append(remark)
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint
-    found = [_in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known]
-    empty = [column for column in found if not column.by_user and not np.isfinite(column.si).any()]
-    if empty and len(empty) < len(found):
+    converted = [
+        _in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known
+    ]
+    empty = [column for column in converted if not column.by_user and not np.isfinite(column.si).any()]
+    if empty and len(empty) < len(converted):
         remarks.append(f"left out, as no row contains a number: {listed(column.name for column in empty)}")
-        found = [column for column in found if column not in empty]
-    return _whole_rows(table, found, remarks)
+        converted = [column for column in converted if column not in empty]
+    return _whole_rows(table, converted, remarks)
 
 
 def misspelt_units(table: OpenTable, mapping: FileMapping) -> QuestionError | None:
@@ -122,7 +121,7 @@ def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMappin
     """Return the columns with the units that a person gave for a channel, a quantity or a name in the file; and remarks."""
     found, remarks = list(columns), []
     for name, unit in mapping.units.items():
-        channel = CHANNELS.get(ALIASES.get(name, name))
+        channel = CHANNELS.get(CHANNEL_ALIASES.get(name, name))
         places = [
             place
             for place, column in enumerate(columns)

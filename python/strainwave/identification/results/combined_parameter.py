@@ -9,14 +9,23 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import typeset
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave import Drive, typeset
+from strainwave.identification.experiments.motion_log import MIN_INERTIA
+from strainwave.identification.results.file_result import IN_CURRENT, LOAD_INERTIA, MOTOR_INERTIA, FileEstimate, FileResult
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
 
 Array = NDArray[np.float64]
+
 MAX_DISTANCE = 3.0  # standard deviations: two files that are further apart contradict each other
 MAX_DISTANCE_IN_MEAN = 2.0  # standard deviations: of files that are no further apart the mean is taken
+LOAD_WITH_MOTOR = (
+    "the inertia of the motor is not known: load.inertia is that of the load, plus that of the motor times the ratio squared"
+)
+MOTOR_WITHOUT_LOAD = (
+    "the inertia of the motor is not known: motor.inertia is what the torque of the motor shows, less the load, which the "
+    "wind-up of the gear shows; "
+)
 
 
 @dataclass(frozen=True)
@@ -153,12 +162,12 @@ def _weights(own: Array, common: Array) -> Array:
     """Return weights of least variance that are not negative, of numbers with parts of their own and a part in common."""
     counted = np.ones(len(own), bool)
     while True:
-        found = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
-        if (found > 0.0).all():
+        weights = np.linalg.solve(_covariance(own[counted], common[counted]), np.ones(counted.sum()))
+        if (weights > 0.0).all():
             break
-        counted[np.flatnonzero(counted)[found <= 0.0]] = False
+        counted[np.flatnonzero(counted)[weights <= 0.0]] = False
     weight = np.zeros(len(own))
-    weight[counted] = found / found.sum()
+    weight[counted] = weights / weights.sum()
     return weight
 
 
@@ -180,3 +189,53 @@ def difference(one: FileEstimate, other: FileEstimate) -> float:
     if one.is_phase:
         off = float(np.remainder(off + np.pi, 2.0 * np.pi) - np.pi)
     return off
+
+
+# ---- Inertia of the motor --------------------------------------------------------------------------------------------
+
+
+def drive_of(result: FileResult) -> Drive | None:
+    """Return the drive fitted to a file; None if it was no drive."""
+    model = None if result.fit is None else result.fit.parts[0].model
+    return model if isinstance(model, Drive) else None
+
+
+def without_motor(files: Sequence[FileResult], *, accept: bool = False) -> tuple[FileResult, ...]:
+    """Return the results with loads less the motor, if a file determines its inertia; a remark states what load.inertia is.
+
+    Args:
+        files: results
+        accept: whether files with a failed check determine it although others do
+    """
+    motors = {each.estimate.law: each for each in combine(files, accept=accept) if each.estimate.path == MOTOR_INERTIA}
+    return tuple(_without_motor(file, motors) for file in files)
+
+
+def _without_motor(file: FileResult, motors: Mapping[str, CombinedParameter]) -> FileResult:
+    drive, own = drive_of(file), {each.path: each for each in file.estimates}
+    if drive is None or LOAD_INERTIA not in own or (drive.motor.inertia > MIN_INERTIA and MOTOR_INERTIA not in own):
+        return file
+    load, motor = own[LOAD_INERTIA], motors.get(own[LOAD_INERTIA].law)
+    if MOTOR_INERTIA in own:
+        of_gear = drive.gear.input_inertia
+        remark = MOTOR_WITHOUT_LOAD + (
+            f"the gear's {of_gear:.3g} kg·m² are not in it" if of_gear else "the wave generator's is in it"
+        )
+    elif motor is not None:
+        load = _less(load, motor.estimate, drive.gear.kinematics.ratio**2)
+        remark = f"the inertia of the motor is that of {motor.taken_from}, and load.inertia is without it"
+    elif load.law == IN_CURRENT:
+        return file
+    else:
+        remark = LOAD_WITH_MOTOR
+    estimates = tuple(load if each.path == LOAD_INERTIA else each for each in file.estimates)
+    read = () if file.recognised is None else file.recognised.remarks
+    place = 1 + max((file.remarks.index(each) for each in read if each in file.remarks), default=-1)  # behind how it was read
+    return replace(file, estimates=estimates, remarks=(*file.remarks[:place], remark, *file.remarks[place:]))
+
+
+def _less(load: FileEstimate, motor: FileEstimate, factor: float) -> FileEstimate:
+    """Return the inertia of a load without that of the motor; what both share is no uncertainty of their difference."""
+    own, common = float(np.hypot(load.own, factor * motor.own)), abs(load.common - factor * motor.common)
+    less = replace(load, value=load.value - factor * motor.value, sigma=float(np.hypot(own, common)), common=common)
+    return less.unless_uncertain()

@@ -17,14 +17,20 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
 from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.motion_model import bristled
-from strainwave.identification.candidates.plain import from_motion_to_motion
-from strainwave.identification.candidates.torque_place import frictionless
+from strainwave.identification.candidates.plain import frictionless, from_motion_to_motion
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, SHARE_OF, MotionLog
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.results.combined_parameter import CombinedParameter, distance
-from strainwave.identification.results.file_result import BEHIND_GEAR, IN_CURRENT, FileEstimate, FileResult
+from strainwave.identification.results.combined_parameter import CombinedParameter, distance, drive_of
+from strainwave.identification.results.file_result import (
+    BEHIND_GEAR,
+    COULOMB_PATH,
+    IN_CURRENT,
+    LOAD_INERTIA,
+    MOTOR_INERTIA,
+    FileEstimate,
+    FileResult,
+)
 from strainwave.identification.results.gear_so_far import is_of, source_of
-from strainwave.identification.results.motor_inertia import LOAD, MOTOR, drive_of
 from strainwave.messages import listed, one_line
 from strainwave.parameters import gear_numbers, plain
 
@@ -58,7 +64,9 @@ def drive_set(
     )  # fmt: skip
     if best is not None:
         whole = _with_bristles(_with_motor(_with_load(whole, best), best, parameters), files)
-    elif whole.load is None and (steady := [each for each in files if _is_at_constant_speed(each)]):
+    elif whole.load is None and (
+        steady := [each for each in files if each.part_of and each.recognised is not None and each.recognised.kind == "log"]
+    ):  # logs that are points of a table of friction
         whole = _with_motor(_with_steady_load(whole, steady[0], parameters), steady[0], parameters)
     unchanged = {path for path, entry in start.sources.items() if whole.sources.get(path) == entry}
     before = None if start.covariance is None else start.covariance.among(unchanged)
@@ -147,17 +155,17 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     """Return the set with the load of a log; numbers that the log does not determine state so."""
     drive, own = drive_of(log), _loads_of(log)
     assert drive is not None
-    given = {} if log.recognised is None else log.recognised.constants
+    constants = {} if log.recognised is None else log.recognised.constants
     load: Any = drive.load
     sources = {}
     for path in own_paths("load", load):
         name = path.removeprefix("load.")
         estimate, before = own.get(path), getattr(whole.load, name, None)
-        if path == LOAD and "load_inertia" in given:
+        if path == LOAD_INERTIA and "load_inertia" in constants:
             sources[path] = Entry(f"given with {log.name}")
         elif estimate is not None and (estimate.state != "not identified" or before is None):
             sources[path] = source_of(estimate, log.name)
-            load = load.replace(inertia=estimate.value) if path == LOAD and estimate.value > 0.0 else load
+            load = load.replace(inertia=estimate.value) if path == LOAD_INERTIA and estimate.value > 0.0 else load
         elif before is not None:
             load = load.replace(**{name: before})
             stated = whole.sources.get(path, Entry("not given"))
@@ -168,66 +176,59 @@ def _with_load(whole: GearSet, log: FileResult) -> GearSet:
     least = MIN_LOAD_SHARE * float(rotor)
     if hasattr(load, "inertia") and load.inertia < least:  # with less, no step of a simulation would be short enough
         load = load.replace(inertia=least)
-        sources[LOAD] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
+        sources[LOAD_INERTIA] = Entry(f"assumed: {100.0 * MIN_LOAD_SHARE:g} % of the rotor's; {log.name} shows none")
     return _with_part(whole, "load", load, sources)
-
-
-def _is_at_constant_speed(result: FileResult) -> bool:
-    """True for a log that is a point of a table of friction."""
-    return bool(result.part_of) and result.recognised is not None and result.recognised.kind == "log"
 
 
 def _with_steady_load(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the load of logs at constant speed: their gravity, and an inertia that changes nothing there."""
     assert log.recognised is not None
-    given = log.recognised.constants
+    constants = log.recognised.constants
     shown = {each.estimate.path: each for each in parameters if each.estimate.path.startswith("load.gravity")}
-    rotor = (whole.gear.input_inertia + given.get("motor_inertia", 0.0)) * whole.gear.kinematics.ratio**2
-    inertia = given.get("load_inertia", max(MIN_LOAD_SHARE * rotor, MIN_INERTIA))
+    rotor = (whole.gear.input_inertia + constants.get("motor_inertia", 0.0)) * whole.gear.kinematics.ratio**2
+    inertia = constants.get("load_inertia", max(MIN_LOAD_SHARE * rotor, MIN_INERTIA))
     gravity = {path.removeprefix("load."): each.estimate.value for path, each in shown.items()}
     load: Any = loads.Pendulum(inertia=inertia, **gravity) if gravity else loads.Inertia(inertia=inertia)
-    why = f"given with {log.name}" if "load_inertia" in given else f"assumed: {log.name}, at constant speed, shows none"
-    sources = {LOAD: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
+    why = f"given with {log.name}" if "load_inertia" in constants else f"assumed: {log.name}, at constant speed, shows none"
+    sources = {LOAD_INERTIA: Entry(why), **{path: source_of(each.estimate, each.source) for path, each in shown.items()}}
     return _with_part(whole, "load", load, sources)
-
-
-def _motor_of(log: FileResult) -> Any:
-    """Return the motor of a log: that of its fit, else one with the torque constant that was given with it."""
-    if (drive := drive_of(log)) is not None:
-        return drive.motor
-    given = {} if log.recognised is None else log.recognised.constants
-    return motor.CurrentSource(torque_constant=given["torque_constant"]) if "torque_constant" in given else motor.TorqueSource()
 
 
 def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log; the source of its constant states if the log counts the other way."""
-    known = _with_motor_of(whole, log, parameters)
-    path = "motor.torque_constant" if "motor.torque_constant" in known.sources else MOTOR
-    entry, turned = known.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
+    with_motor = _with_motor_of(whole, log, parameters)
+    path = "motor.torque_constant" if "motor.torque_constant" in with_motor.sources else MOTOR_INERTIA
+    entry, turned = with_motor.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
     if not turned or OPPOSITE in entry.source:
-        return known
+        return with_motor
     stated = replace(entry, source=f"{entry.source}; in {one_line(log.name)} {turned}")
-    return known.replace(sources={**known.sources, path: stated})
+    return with_motor.replace(sources={**with_motor.sources, path: stated})
 
 
 def _with_motor_of(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> GearSet:
     """Return the set with the motor of a log: with its torque constant if that is known, else one that gives a torque."""
-    given, fitted = ({} if log.recognised is None else log.recognised.constants), _motor_of(log)
+    constants = {} if log.recognised is None else log.recognised.constants
     if whole.motor is not None:
         names = {field["name"] for field in whole.motor.fields}
         numbers = {"torque_constant": "torque_constant", "resistance": "resistance", "inertia": "motor_inertia"}
-        changed = {name: given[key] for name, key in numbers.items() if key in given and name in names}
+        changed = {name: constants[key] for name, key in numbers.items() if key in constants and name in names}
         sources = {path: entry for path, entry in whole.sources.items() if path.startswith("motor.")}
         sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in changed}
         return _with_part(whole, "motor", whole.motor.replace(**changed), sources)
     inertia, source = _motor_inertia(whole, log, parameters)
-    known = (fitted if "torque_constant" in given else motor.TorqueSource()).replace(inertia=inertia)
-    sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", known)}
-    sources |= {f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in given}
-    if "motor.back_emf" in sources and "torque_constant" in given:
+    fitted: Any = motor.TorqueSource()
+    if "torque_constant" in constants:
+        of_fit = drive_of(log)
+        fitted = motor.CurrentSource(torque_constant=constants["torque_constant"]) if of_fit is None else of_fit.motor
+    saved = fitted.replace(inertia=inertia)
+    sources = {path: Entry(f"assumed: none; {log.name} does not determine it") for path in own_paths("motor", saved)}
+    sources |= {
+        f"motor.{name}": Entry(f"given with {log.name}") for name in ("torque_constant", "resistance") if name in constants
+    }
+    if "motor.back_emf" in sources and "torque_constant" in constants:
         sources["motor.back_emf"] = Entry(f"torque constant given with {log.name}")
-    sources[MOTOR] = source
-    return _with_part(whole, "motor", known, {path: sources[path] for path in own_paths("motor", known)})
+    sources[MOTOR_INERTIA] = source
+    return _with_part(whole, "motor", saved, {path: sources[path] for path in own_paths("motor", saved)})
 
 
 def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[CombinedParameter]) -> tuple[float, Entry]:
@@ -235,8 +236,8 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
     if log.recognised is not None and "motor_inertia" in log.recognised.constants:
         return log.recognised.constants["motor_inertia"], Entry(f"given with {log.name}")
     least = 0.0 if whole.gear.input_inertia > 0.0 else MIN_INERTIA
-    combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR]
-    for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR)):
+    combined = [(each.estimate, each.taken_from) for each in parameters if each.estimate.label == MOTOR_INERTIA]
+    for estimate, name in (*combined, *((each, log.name) for each in log.estimates if each.label == MOTOR_INERTIA)):
         if estimate.state != "not identified":
             return max(estimate.value, least), source_of(estimate, name)
     return least, Entry("assumed: not known; the inertia of the load has it inside, times the ratio squared")
@@ -244,12 +245,9 @@ def _motor_inertia(whole: GearSet, log: FileResult, parameters: Sequence[Combine
 
 def _with_bristles(whole: GearSet, files: Sequence[FileResult]) -> GearSet:
     """Return the set with bristles that bend at reversals, if its friction is that of a log which shows how they bend."""
-    source = next(
-        (entry for path, entry in whole.sources.items() if plain(path) == "gear.friction_input.coulomb"), Entry("not given")
-    ).source
-    log = next(
-        (each for each in files if each.bend > 0.0 and source.startswith("identified from") and each.name in source), None
-    )
+    source = next((entry.source for path, entry in whole.sources.items() if plain(path) == COULOMB_PATH), "")
+    is_of_log = source.startswith("identified from")
+    log = next((each for each in files if is_of_log and each.bend > 0.0 and each.name in source), None)
     if log is None:
         return whole
     before: Any = whole.gear.friction_input
@@ -295,7 +293,10 @@ def _covariance(
     kept = {} if before is None else {path: place for place, path in enumerate(before.paths) if path not in paths}
     if not paths and not kept:
         return None
-    own, common = np.array([each.own for each in estimates]), np.array([_signed_common(each) for each in estimates])
+    own = np.array([each.own for each in estimates])
+    common = np.array(  # with the sign of a torque: all torques grow with the constant
+        [np.copysign(each.common, each.value) if each.is_of_torque else each.common for each in estimates]
+    )
     n, every = len(paths), min(len(paths) + len(kept), MAX_NUMBERS)
     matrix = np.zeros((every, every))
     if n:
@@ -317,14 +318,9 @@ def _identified(whole: GearSet, parameters: Sequence[CombinedParameter]) -> Iter
             yield path, (of_file or own)[0]
 
 
-def _signed_common(estimate: FileEstimate) -> float:
-    """Return the part of a standard deviation that files share, with the sign of the number: all grow with the constant."""
-    return float(np.copysign(estimate.common, estimate.value)) if estimate.is_of_torque else estimate.common
-
-
 def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], files: Sequence[FileResult]) -> Array:
     """Return the correlation of estimates by the fits of their files, shape (n, n); 0 between fits."""
-    found = np.eye(len(estimates))
+    correlation = np.eye(len(estimates))
     for file in files:
         for fit in file.fits:
             own, at = list[int](), list[int]()
@@ -334,8 +330,8 @@ def _correlation(estimates: Sequence[FileEstimate], sources: Sequence[str], file
                     at.append(place)
             block = fit.correlation[np.ix_(at, at)]
             if own and np.isfinite(block).all():
-                found[np.ix_(own, own)] = block
-    return found
+                correlation[np.ix_(own, own)] = block
+    return correlation
 
 
 def _place(estimate: FileEstimate, fit: Fit) -> int | None:

@@ -1,4 +1,4 @@
-"""Result of one file: its estimates, its checks, and what is drawn of it."""
+"""Result of one file: its estimates, its checks, its error on data held out, and what is drawn of it."""
 
 from __future__ import annotations
 
@@ -10,27 +10,135 @@ import numpy as np
 
 from strainwave import typeset
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording
-from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.held_out import HeldOut
+from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
+from strainwave.typeset import percent, quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from strainwave.identification.fitting.fit import Fit
+
 State = Literal["identified", "identified in combination", "not identified", "kept"]
-Look = Literal["table", "loop", "series", "means", "turn"]
-Subject = Literal["torque", "friction", "twist", "error", ""]
-UNITS_OF_EFFORT = ("N.m", "A", "V")
 MAX_RELATIVE_SIGMA = 0.5  # standard deviation over the value; an estimate with a larger one is not identified
+COULOMB_PATH, BREAKAWAY_PATH = "gear.friction_input.coulomb", "gear.friction_input.breakaway"
+LOAD_INERTIA, GRAVITY_PATH, MOTOR_INERTIA = "load.inertia", "load.gravity_torque", "motor.inertia"
 IN_CURRENT = "in A"  # law of an estimate without the torque constant
 ASSUMED_BY_RECORDER = "it is the stiffness that the recorder assumed, and was not measured"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
+MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
+MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
+MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
+MAX_IN_BAND = 0.01  # of what varies in the pass band
+
+
+@dataclass(frozen=True)
+class Check(Presented):
+    """A consistency check of a measurement, or of several together.
+
+    Attributes:
+        name: of the check, the same for every file, as `ratio of two encoders`
+        source: the file, or the files, that it concerns
+        value: the number that is checked
+        limit: the threshold that it must not exceed
+        unit: of both
+        failed: True if the value exceeds the limit
+        message: the numbers that disagree, and why they should not; one sentence
+        remedy: what to check first, or the option that settles it
+    """
+
+    name: str
+    source: str
+    value: float
+    limit: float
+    unit: str
+    failed: bool
+    message: str = ""
+    remedy: str = ""
+
+    def _headline(self) -> str:
+        return f"{self.name} of {self.source}: {typeset.quantity(self.value, self.unit)}, {self._verdict()}"
+
+    def _verdict(self) -> str:
+        return f"{'FAILED' if self.failed else 'passed'}, limit {typeset.quantity(self.limit, self.unit)}"
+
+
+def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
+    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of what varies.
+
+    Args:
+        error: root mean square of measured less predicted
+        unit: of all
+        varies: root mean square of the signal about its mean; not positive if it does not vary
+        plain: what plain least squares leaves; not a number without
+
+    >>> error_in_words(0.147, "A", 1.79, 0.185), error_in_words(8.3e-3, "N.m", 0.054)
+    ('0.147 A (plain least squares 0.185 A), 8.2 % of what varies', '8.3 mN·m, 15 % of what varies')
+    """
+    beside = f" (plain least squares {quantity(plain, unit)})" if np.isfinite(plain) else ""
+    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of what varies' if varies > 0.0 else ''}"
+
+
+@dataclass(frozen=True)
+class HeldOut(Presented):
+    """The error of a model over a contiguous stretch that its numbers were not fitted to: every sample, in the full band.
+
+    Models were chosen by such stretches, this one among them, so that a new record has a somewhat larger error.
+
+    Attributes:
+        stretch: the stretch, as `last 30 % of the motion`
+        channel: that is predicted
+        unit: of all errors
+        error: root mean square of measured less predicted, at rest of what no friction that holds makes up for
+        zero: error of the mean of the channel in the rest of the motion: of a model that predicts nothing
+        plain: error of plain least squares there (offset, inertia, gravity, Coulomb and viscous friction); not a number without
+        samples: compared
+        in_band: the error over that of the mean in the pass band of the fit, where slow sliding alone is compared [1]
+    """
+
+    stretch: str
+    channel: str
+    unit: str
+    error: float
+    zero: float
+    plain: float = np.nan
+    samples: int = 0
+    in_band: float = np.nan
+
+    @property
+    def words(self) -> str:
+        """The error in words, as `error_in_words`."""
+        return error_in_words(self.error, self.unit, self.zero, self.plain)
+
+    @property
+    def relative(self) -> float:
+        """Error over that of a model that predicts nothing [1]."""
+        return self.error / self.zero if self.zero > 0.0 else np.inf
+
+    @property
+    def share_of_plain(self) -> float:
+        """Error over that of plain least squares [1]; not a number without."""
+        return self.error / max(self.plain, 1e-300)
+
+    @property
+    def max_share_of_plain(self) -> float:
+        """Limit of `share_of_plain` [1]."""
+        return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
+
+    def _headline(self) -> str:
+        plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
+        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
+        if np.isfinite(self.plain):
+            yield Row("error of plain least squares", self.plain, self.unit)
+        yield Row("error of the mean", self.zero, self.unit)
+        yield Row("samples held out", self.samples)
 
 
 def is_uncertain(value: float, sigma: float) -> bool:
@@ -118,38 +226,6 @@ class FileEstimate(Presented):
 
 
 @dataclass(frozen=True, eq=False)
-class Picture(ComparedByFields):
-    """Measured against modelled, to be drawn.
-
-    Attributes:
-        curves: the abscissa, the channel measured, and `modelled`, as the functions of `results.curves` return them
-        look: style of the drawing
-        label: of the channel in words; its name if not given
-        title: of the picture, if a file has several
-        model: in words, if it is not that of the file
-        orders: of an error over a turn, each with its amplitude and the standard deviation of that
-    """
-
-    curves: Recording
-    look: Look = "series"
-    label: str = ""
-    title: str = ""
-    model: str = ""
-    orders: tuple[tuple[float, float, float], ...] = ()
-
-    @property
-    def subject(self) -> Subject:
-        """Pictures of the first screen: torque over time, friction over speed, twist over torque, error over a turn."""
-        if self.look == "turn":
-            return "error"
-        if self.look == "loop":
-            return "twist" if "twist" in self.curves else ""
-        if self.look == "table":
-            return "friction"
-        return "torque" if self.look == "series" and self.curves.unit(self.curves.names[1]) in UNITS_OF_EFFORT else ""
-
-
-@dataclass(frozen=True, eq=False)
 class FileResult(ComparedByFields, Pictured):
     """Result of one file.
 
@@ -224,8 +300,6 @@ class FileResult(ComparedByFields, Pictured):
         Raises:
             ValueError: the file was refused, or is a point of a table of several files
         """
-        from strainwave.identification.results.picture_plot import pictures_figure
-
         if not self.pictures:
             raise ValueError(f"{self.name} has nothing to draw: {self.refused or f'a part of the {self.part_of}'}")
         return pictures_figure(self.pictures, f"Measured and modelled: {self.name}")

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from strainwave import kinematics
 from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -20,10 +21,12 @@ from strainwave.parameters import gear_numbers, plain
 from strainwave.questions import TORQUE_CONSTANT, QuestionError
 
 ROTOR_SIGMA = 0.05  # relative standard deviation of an inertia, if the data sheet contains none (assumed)
-AMPLITUDE = "gear.kinematic_error.amplitude"
+ERROR_AMPLITUDE = "gear.kinematic_error.amplitude"
 EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as exact
 START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
-MODULATING = ("cyclic", "thermal")  # laws that vary another one
+MODULATING_LAWS = ("cyclic", "thermal")  # laws that vary another one
+KINEMATICS_PATHS = "gear.kinematics."
+RATIO_TOLERANCE = 1e-9  # relative: two ratios that differ by less are one
 
 
 @dataclass(frozen=True)
@@ -84,7 +87,7 @@ class GearSoFar:
             name: of the file
         """
         states = {part: {each.state for each in estimates if is_of(each.path, {part})} for part in parts}
-        laws = {part: getattr(gear, part) for part, found in states.items() if found != {"not identified"}}
+        laws = {part: getattr(gear, part) for part, of_part in states.items() if of_part != {"not identified"}}
         entries = {each.path: source_of(each, name) for each in estimates}
         return self._with_laws(laws, entries, {each.path for each in estimates if not each.why}, name)
 
@@ -133,7 +136,7 @@ class GearSoFar:
     def sliding(self) -> Any:
         """Return the friction of the input as it slides, without what modulates it over angle and temperature."""
         law: Any = self.gear_set.gear.friction_input
-        while law.name in MODULATING:
+        while law.name in MODULATING_LAWS:
             law = law.law
         return law
 
@@ -147,7 +150,7 @@ class GearSoFar:
         """
         outer: Any = self.gear_set.gear.friction_input
         depth, around = 0, list[Any]()
-        while outer.name in MODULATING:
+        while outer.name in MODULATING_LAWS:
             around.append(outer)
             outer, depth = outer.law, depth + 1
         for each in reversed(around):
@@ -176,9 +179,9 @@ def is_of(path: str, parts: Collection[str]) -> bool:
 
 def compared_path(path: str, gear: Any) -> str:
     """Return the path by which estimates of a number of a gear by several files are compared: an amplitude by its order."""
-    if path.startswith(f"{AMPLITUDE}["):
+    if path.startswith(f"{ERROR_AMPLITUDE}["):
         error: Any = gear.kinematic_error
-        return f"{AMPLITUDE} of order {error.order[int(path.partition('[')[2][:-1])]:g}"
+        return f"{ERROR_AMPLITUDE} of order {error.order[int(path.partition('[')[2][:-1])]:g}"
     return plain(path)
 
 
@@ -195,27 +198,15 @@ def _first_sigma(part: str, estimates: Sequence[FileEstimate]) -> float:
     return own[0] if own else np.inf
 
 
-@dataclass(frozen=True)
-class TorqueConstant:
-    """The torque constant of the motor, which is common to all files with a current in place of a torque.
+def torque_constant_of(file: Recognised, gear_set: GearSet) -> tuple[float, float] | None:
+    """Return the torque constant [N.m/A] and its relative standard deviation [1]; None if it is not known.
 
-    Attributes:
-        value: [N.m/A]
-        relative: its standard deviation over its value [1]
+    It is exact if a person gave it with the file, else as the set has it, and then common to all files with a current.
     """
-
-    value: float
-    relative: float
-
-    @classmethod
-    def of(cls, file: Recognised, gear_set: GearSet) -> TorqueConstant | None:
-        """Return it as given with the file, which is exact; else as the set has it; None if neither does."""
-        if "torque_constant" in file.constants:
-            return cls(file.constants["torque_constant"], 0.0)
-        value = getattr(gear_set.motor, "torque_constant", None)
-        if not value:
-            return None
-        return cls(value, relative_sigma(gear_set, "motor.torque_constant", value))
+    if "torque_constant" in file.constants:
+        return file.constants["torque_constant"], 0.0
+    value = getattr(gear_set.motor, "torque_constant", None)
+    return (value, relative_sigma(gear_set, "motor.torque_constant", value)) if value else None
 
 
 def relative_sigma(gear_set: GearSet, path: str, value: float) -> float:
@@ -249,9 +240,60 @@ def with_torque(file: Recognised, gear_set: GearSet) -> tuple[Recording, float]:
     """
     if "torque" in file.recording:
         return file.recording, 0.0
-    constant = TorqueConstant.of(file, gear_set)
+    constant = torque_constant_of(file, gear_set)
     if constant is None:
         raise QuestionError("it has the current alone", [TORQUE_CONSTANT])
+    value, relative = constant
     counted = abs(gear_set.gear.kinematics.ratio) if file.side == "output" else 1.0
-    torque = counted * constant.value * file.recording["current"]
-    return file.recording.with_column("torque", torque, "N.m"), constant.relative
+    return file.recording.with_column("torque", counted * value * file.recording["current"], "N.m"), relative
+
+
+# ---- Ratio -----------------------------------------------------------------------------------------------------------
+
+
+def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
+    """Return the set with the ratio that a person gave with all files."""
+    ratios = {file.constants.get("ratio") for file in files}
+    if len(ratios) != 1 or (ratio := ratios.pop()) is None:
+        return start
+    return _with_kinematics(start, geared(start.gear, ratio).kinematics, "ratio given with the files")
+
+
+def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
+    """Return the gear so far with the ratio that a person gave with this file."""
+    if "ratio" not in file.constants:
+        return known
+    other = geared(known.gear_set.gear, file.constants["ratio"]).kinematics
+    return replace(known, gear_set=_with_kinematics(known.gear_set, other, "ratio given with the file"))
+
+
+def with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
+    """Return the gear so far with the ratio of a set."""
+    return replace(known, gear_set=_with_kinematics(known.gear_set, of.gear.kinematics, of))
+
+
+def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSet:
+    """Return the set with another ratio, whose source is that of a set, or as given."""
+    if gear_set.gear.kinematics == other:
+        return gear_set
+    sources = {path: entry for path, entry in gear_set.sources.items() if not path.startswith(KINEMATICS_PATHS)}
+    names = [f"{KINEMATICS_PATHS}{field['name']}" for field in other.fields if field["kind"] != "choice"]
+    sources |= {name: Entry(of) if isinstance(of, str) else of.sources[name] for name in names}
+    return replace(gear_set, gear=gear_set.gear.replace(kinematics=other), sources=sources)
+
+
+def geared(gear: Any, ratio: float) -> Any:
+    """Return the gear with another ratio; its output turns the same way as before.
+
+    It is a strain wave gear if whole teeth give this ratio, else a plain ratio.
+    """
+    if abs(abs(ratio) - abs(gear.kinematics.ratio)) < RATIO_TOLERANCE * abs(ratio):
+        return gear
+    size = abs(ratio)
+    if abs(size - round(size)) > RATIO_TOLERANCE * size or round(size) < 2:
+        return gear.replace(kinematics=kinematics.PlainRatio(reduction=size))
+    is_backwards = ratio < 0.0 or gear.kinematics.ratio < 0.0
+    teeth = 2 * round(size) - (0 if is_backwards else 2)  # two fewer on the flexspline
+    fixed = "circular_spline" if is_backwards else "flexspline"
+    strain_wave = kinematics.StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
+    return gear.replace(kinematics=strain_wave)

@@ -1,34 +1,49 @@
-"""A recording compared with the prediction of a saved gear: the error, the error allowed, and the changes."""
+"""A recording compared with the prediction of a saved gear: the error, the error allowed, and the changes of its parts."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
-from strainwave import typeset
+from strainwave import Drive, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
-from strainwave.identification.results.changes import DRY, FRICTION, GRAVITY, INERTIA, PartChange
-from strainwave.identification.results.check import Check
-from strainwave.identification.results.file_result import Picture
-from strainwave.identification.results.held_out import MAX_UNEXPLAINED
+from strainwave.identification.experiments.friction_table import FRICTIONLESS
+from strainwave.identification.results.file_result import MAX_UNEXPLAINED, Check
+from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.orders.lines import SpectrumLine
-from strainwave.presentation import Pictured, Row
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.parameters import every
+from strainwave.presentation import Pictured, Presented, Row
+from strainwave.statistics.linear_fit import normal_inverse
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+Array = NDArray[np.float64]
+
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
-MAX_SHARE_LEFT = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
+MAX_SHARE_LEFT_BY_CHANGES = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
 
 Verdict = Literal["agrees", "differs", "contradicts", "refused"]
+MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
+MIN_CHANGE_TEXT = f"{100.0 * MIN_CHANGE:g} %"
+MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
+STEP_SIGMA = 0.1  # standard deviations of a number, between two predictions
+SCATTER_BLOCKS = 20  # contiguous ones of a recording, over which residuals scatter
+MIN_SLIDING_SAMPLES = 50  # of sliding, from which changes are determined
+DRY, VISCOUS, FRICTION, ZERO, DELAY = "dry friction", "viscous friction", "friction", "zero", "delay"
+INERTIA, GRAVITY, TEMPERATURE = "inertia of the load", "gravity of the load", "friction over temperature"
+ZERO_OF_ANGLE = "zero of the angle"
+VISCOUS_NUMBERS = ("viscous", "viscous_torque")  # with which viscous friction grows
+FRICTION_PARTS = ("friction_input", "friction_mesh", "friction_output")
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,8 +119,6 @@ class Prediction(ComparedByFields, Pictured):
         Raises:
             ValueError: the recording cannot be predicted
         """
-        from strainwave.identification.results.picture_plot import pictures_figure
-
         if (picture := self.picture) is None:
             raise ValueError(f"{self.name} cannot be drawn: {self.refused}")
         return pictures_figure([picture], f"{self.name}, predicted by {self.gear}")
@@ -126,7 +139,7 @@ class Prediction(ComparedByFields, Pictured):
     @property
     def explained(self) -> bool:
         """True if the changes are the cause: with them the error is allowed, or at most half of `error` and of `varies`."""
-        return self.error_with_changes <= max(self.allowed, MAX_SHARE_LEFT * min(self.error, self.varies))
+        return self.error_with_changes <= max(self.allowed, MAX_SHARE_LEFT_BY_CHANGES * min(self.error, self.varies))
 
     @property
     def changed(self) -> tuple[PartChange, ...]:
@@ -206,3 +219,186 @@ def judged(prediction: Prediction, gear_set: GearSet, variance: float) -> Predic
         "see what changed; if nothing did, see whether this is the same joint, and columns, units and sides are as before",
     )  # fmt: skip
     return replace(prediction, allowed=allowed, checks=(*prediction.checks, check))
+
+
+# ---- Changes of parts of the gear ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class PartChange(Presented):
+    """Change of a part of a saved gear or drive by a recording.
+
+    Attributes:
+        name: of the part: `dry friction`, `viscous friction`, `friction` if the recording does not separate both, `zero` of the
+            channel, its `delay` behind the motion, `inertia of the load`, `gravity of the load`, `zero of the angle` at the
+            output, `friction over temperature`
+        value: its scale, 1 if it is as saved; of zero and delay its value; over temperature the relative change per kelvin; of
+            the zero of the angle the angle in the saved position of the load, less that saved
+        sigma: standard deviation of `value`, with that of the saved numbers
+        unit: of both
+        unchanged: `value` of the saved gear
+        smallest: difference from it that matters; a smaller one is none, however small its standard deviation
+        limit: `smallest` in words, as `3 % of what the current varies`
+
+    >>> change = PartChange("dry friction", 1.3, 0.02, "1", unchanged=1.0, smallest=0.03)
+    >>> round(change.significance, 9), change.significant
+    (15.0, True)
+    """
+
+    name: str
+    value: float
+    sigma: float
+    unit: str
+    unchanged: float
+    smallest: float = 0.0
+    limit: str = ""
+
+    @property
+    def significance(self) -> float:
+        """Difference from the saved gear in standard deviations [1]."""
+        off = abs(self.value - self.unchanged)
+        return off / self.sigma if self.sigma > 0.0 else (0.0 if off == 0.0 else np.inf)
+
+    @property
+    def significant(self) -> bool:
+        """True if it differs from the saved gear by more than chance makes, and by `smallest` or more."""
+        return self.significance > SIGNIFICANCE_SIGMA and not self.is_small
+
+    @property
+    def is_small(self) -> bool:
+        """True if the difference from the saved gear is below `smallest`."""
+        return abs(self.value - self.unchanged) < self.smallest
+
+    def _headline(self) -> str:
+        verdict = "changed" if self.significant else "no significant change"
+        return (
+            f"{self.name} {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, saved {self.unchanged:g}: {verdict}"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Direction(ComparedByFields):
+    """Derivative of a channel by a part of a gear.
+
+    Attributes:
+        name, unit, unchanged, smallest, limit: as of a `PartChange`
+        effect: derivative of the channel, shape (n,)
+        max_sigma: standard deviation beyond which the recording does not determine the part
+        here: value at which the channel is predicted; `unchanged` if not given
+    """
+
+    name: str
+    unit: str
+    unchanged: float
+    effect: Array
+    smallest: float = MIN_CHANGE
+    limit: str = MIN_CHANGE_TEXT
+    max_sigma: float = MAX_SCALE_SIGMA
+    here: float | None = None
+
+    @property
+    def start(self) -> float:
+        """Value at which the channel is predicted."""
+        return self.unchanged if self.here is None else self.here
+
+    def changed_by(self, more: float, sigma: float) -> PartChange:
+        """Return the change of a part whose value differs from `start` by `more`."""
+        return PartChange(self.name, self.start + more, sigma, self.unit, self.unchanged, self.smallest, self.limit)
+
+
+def friction_directions(gear: Any, at: Callable[[Any], Array]) -> Iterator[Direction]:
+    """Yield the derivatives of a channel by the scales of dry and of viscous friction.
+
+    Args:
+        gear: the saved one
+        at: returns the prediction of a gear, shape (n,)
+    """
+    whole = at(gear)
+    total = whole - at(gear.replace(**dict.fromkeys(FRICTION_PARTS, FRICTIONLESS)))
+    numbers = {
+        path: each.value for path, each in every(gear).items()
+        if path.partition(".")[0] in FRICTION_PARTS and path.rpartition(".")[2] in VISCOUS_NUMBERS and each.value != 0.0
+    }  # fmt: skip
+    halved = at(gear.replace({path: 0.5 * value for path, value in numbers.items()})) if numbers else whole
+    viscous = 2.0 * (whole - halved)
+    yield Direction(DRY, "1", 1.0, total - viscous)
+    yield Direction(VISCOUS, "1", 1.0, viscous)
+
+
+def changes_of(
+    left: Array, directions: Sequence[Direction], by_numbers: Array, covariance: Array, coherent: float = 0.0
+) -> tuple[tuple[PartChange, ...], Array]:
+    """Return changes of parts of a gear by a residual, and the part of the residual that they explain, shape (n,).
+
+    Least squares of the residual on all directions together. Their variance is the scatter of contiguous blocks, within which
+    residuals correlate (Liang and Zeger 1986), that of the saved numbers, and that by an error of the laws, which another
+    motion turns into other apparent changes: it is taken as coherent within each block. A scale that the residual does not
+    determine is left out, the least determined first; dry and viscous friction that it does not separate are one.
+
+    Args:
+        left: measured less predicted, shape (n,)
+        directions: of parts that may have changed
+        by_numbers: derivatives of the prediction by the saved numbers, shape (n, p)
+        covariance: of these numbers, shape (p, p)
+        coherent: root mean square error of the laws, in the unit of the residual
+    """
+    asked = [each for each in directions if np.linalg.norm(each.effect) > 0.0]
+    while asked:
+        columns = np.stack([each.effect for each in asked], axis=1)
+        inverse = normal_inverse(columns) @ columns.T
+        values = inverse @ left
+        explained = columns @ values
+        by_laws = coherent**2 * (_blocks(np.abs(inverse)) ** 2).sum(axis=0)
+        slopes = inverse @ by_numbers
+        by_saved = np.einsum("kp,pq,kq->k", slopes, covariance, slopes)
+        sums = _blocks(inverse * (left - explained))
+        by_scatter = (sums**2).sum(axis=0) * len(sums) / max(len(sums) - len(asked), 1)
+        sigma = np.sqrt(by_scatter + by_laws + by_saved)
+        excess = sigma / np.array([each.max_sigma for each in asked])
+        if excess.max() <= 1.0:
+            break
+        asked = _without(asked, int(np.argmax(excess)))
+    else:
+        return (), np.zeros_like(left)
+    shown = zip(asked, values.tolist(), sigma.tolist(), strict=True)
+    return tuple(each.changed_by(value, s) for each, value, s in shown), explained
+
+
+def _without(asked: Sequence[Direction], worst: int) -> list[Direction]:
+    """Return the directions without one; dry and viscous friction become one first."""
+    names = {each.name: each for each in asked}
+    if asked[worst].name in (DRY, VISCOUS) and {DRY, VISCOUS} <= names.keys():
+        both = Direction(FRICTION, "1", 1.0, names[DRY].effect + names[VISCOUS].effect)
+        return [both, *(each for each in asked if each.name not in (DRY, VISCOUS))]
+    return [each for k, each in enumerate(asked) if k != worst]
+
+
+def _blocks(values: Array) -> Array:
+    """Return the sums over contiguous blocks, shape (k, n) becomes (blocks, k)."""
+    blocks = min(SCATTER_BLOCKS, max(values.shape[1] // 2, 1))
+    return np.array([part.sum(axis=1) for part in np.array_split(values, blocks, axis=1)])
+
+
+def slopes_by_numbers(
+    gear_set: GearSet, model: Any, at: Callable[[Any], Array], beginnings: str | tuple[str, ...]
+) -> tuple[Array, Array]:
+    """Return the derivatives of a channel by saved numbers, shape (n, p), and the covariance of these, shape (p, p).
+
+    Args:
+        gear_set: the saved one
+        model: its gear or drive, at which they are taken
+        at: returns the prediction of such a model, shape (n,)
+        beginnings: of the paths of numbers that the channel depends on
+    """
+    here, saved = at(model), gear_set.covariance
+    own = None if saved is None else saved.among([path for path in saved.paths if path.startswith(beginnings)])
+    if own is None:
+        return np.zeros((len(here), 0)), np.zeros((0, 0))
+    steps = STEP_SIGMA * np.sqrt(np.diag(own.array))
+    prefix, numbers = "" if isinstance(model, Drive) else "gear.", every(model)
+    slopes = np.zeros((len(here), len(steps)))  # of a number that the model lacks
+    for place, (path, step) in enumerate(zip(own.paths, steps, strict=True)):
+        if (number := numbers.get(path := path.removeprefix(prefix))) is not None:
+            move = step if number.value + step < number.high else -step
+            slopes[:, place] = (at(model.replace({path: number.value + move})) - here) / move
+    return slopes, own.array

@@ -30,10 +30,9 @@ from strainwave.rig.analysis.lost_motion import (
 )
 from strainwave.rig.analysis.regimes import NAMES, RegimeName, Segmented, cycles, part, segment
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.analysis.soft_spot import SoftSpot, soft_spots
-from strainwave.rig.analysis.stiffness import Stiffness, segments_of, stiffness_of
+from strainwave.rig.analysis.stiffness import SoftSpot, Stiffness, segments_of, soft_spots, stiffness_of
 from strainwave.rig.loop import Loop
-from strainwave.statistics.student import SIGNIFICANCE_SIGMA
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -12,11 +12,11 @@ import numpy as np
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import shortened
 from strainwave.presentation import Statement
+from strainwave.rig.analysis.cycle import Factors, cycle_to
 from strainwave.rig.analysis.lost_motion import lost_motion, separation
 from strainwave.rig.analysis.regimes import Branch, Segmented, segment
 from strainwave.rig.analysis.result import Result, inverse, result
 from strainwave.rig.analysis.stiffness import COMPLIANCE, UNIT, shared
-from strainwave.rig.influence.cycle import Factors, cycle_to
 from strainwave.rig.loop import Loop, Side
 
 

@@ -12,15 +12,13 @@ from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
-from strainwave.files.entries import NOT_GIVEN, Entry, Quantity
-from strainwave.files.forms import Form, checked, elements, entry_schema, inline, schema
+from strainwave.files.entries import NOT_GIVEN, Entry, Form, Quantity, checked, elements, entry_schema, inline, schema
 from strainwave.files.gear_file import at, document
-from strainwave.files.gear_set import CATALOGUE_FOLDER
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted
 from strainwave.rig.bench.setup import Camera, Masses, Rig, Value
 
-RIG_FOLDER = CATALOGUE_FOLDER / "rigs"  # the rigs of the catalogue
+RIG_FOLDER = Path(__file__).parents[1] / "rigs"  # that come with the package
 
 # Each number with the unit that it has here, in the tables of a file.
 NUMBERS: dict[str, dict[str, str]] = {

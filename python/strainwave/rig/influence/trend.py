@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.presentation import Presented
 from strainwave.statistics.linear_fit import solved
-from strainwave.statistics.student import student
+from strainwave.statistics.scale import student
 
 Array = NDArray[np.float64]
 Law = Literal["power", "exponential", "linear"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import degrees
@@ -15,24 +15,27 @@ from numpy.typing import NDArray
 from strainwave.equality import ComparedByFields
 from strainwave.files.folder import inside
 from strainwave.messages import listed, one_line, quoted
-from strainwave.presentation import Presented
+from strainwave.presentation import Presented, Statement
 from strainwave.progress import Progress, in_turn
 from strainwave.rig.analysis.regimes import cycles
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Camera, Rig
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import photograph_of, read_steps
+from strainwave.rig.bench.steps import Step, by_place, photograph_of, place_words, read_steps
+from strainwave.rig.bench.torque import Torque, torque_of, without_compliance
 from strainwave.rig.loop import Loop
 from strainwave.rig.reading.recorded import scatter
-from strainwave.rig.running.plan_check import check
-from strainwave.rig.torque.couple import remarks_on_couple
-from strainwave.rig.torque.torque import Torque, torque_of, without_compliance
-from strainwave.rig.vision.angle import Angles, Frame, follow, look
+from strainwave.rig.running.plan import check
+from strainwave.rig.vision.angle import Angles, follow
+from strainwave.rig.vision.camera import flat
+from strainwave.rig.vision.marker import Frame, look
+from strainwave.statistics.linear_fit import normal_inverse
 
 Array = NDArray[np.float64]
 RIG, PLAN = "rig.toml", "plan.csv"
 Place = tuple[float, str]  # position of the flexspline [rad] and specimen
 _BACKWARD_SIGMA = 5.0  # standard deviations that an angle must move against the torque before a remark reports it
+MIN_SHIFT_SIGMA = 4.0  # standard deviations beyond which a shift is reported
+MIN_PHOTOGRAPHS = 6  # three vectors are fitted
 
 
 class AngleReading(NamedTuple):
@@ -133,25 +136,31 @@ def read_test(
     found: list[Angles] = []
     remarks: list[str] = []
     frames: list[Frame] = []
-    for place, of_place in _places(steps).items():
+    for place, of_place in by_place(steps).items():
         named = [step for step in of_place if step.image is not None]
         with in_turn(progress, len(named)) as turn:
-            frames_of_place = [_look(folder, step, rig, turn) for step in named]
+            frames_of_place = []
+            for step in named:
+                turn(str(step.image))
+                frame = look(photograph_of(step, folder), camera=rig.camera)
+                frames_of_place.append(replace(frame, name=str(step.image)))  # as the steps name it, folder and all
         useful = [step for step, frame in zip(named, frames_of_place, strict=True) if frame.markers is not None]
         if useful:
-            chosen = reference if reference in [step.image for step in useful] else _at_peak(useful)
+            loads = [step.mass_positive - step.mass_negative if step.torque is None else step.torque for step in useful]
+            chosen = reference if reference in [step.image for step in useful] else useful[int(np.argmax(loads))].image
             found.append(follow(frames_of_place, camera=rig.camera, reference=chosen))
             frames_of_place = list(found[-1].frames)
-            remarks += [f"{_called(place)}: {each}" for each in found[-1].remarks]
+            remarks += [f"{place_words(place)}: {each}" for each in found[-1].remarks]
         frames += frames_of_place
     remarks += [f"{frame.name}: {words}" for frame in frames for words in (frame.fault, *frame.warnings) if words]
     made = loops(steps, rig, found)
     if not made:
         raise ValueError(one_line(f"{folder}: no position has two steps with torque and angle; {listed(remarks)}"))
     hashes = {frame.name: frame.sha256 for frame in frames}
-    return TorsionTest(
-        folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(dict.fromkeys(remarks)), _deviations(folder, steps)
-    )
+    planned = inside(folder, PLAN)
+    deviations = tuple(map(str, check(steps, read_steps(planned)))) if planned.exists() else None
+    remarks = list(dict.fromkeys(remarks))
+    return TorsionTest(folder, rig, tuple(steps), tuple(found), tuple(made), hashes, tuple(remarks), deviations)
 
 
 def _check_masses(folder: Path, steps: Sequence[Step], rig: Rig) -> None:
@@ -163,17 +172,6 @@ def _check_masses(folder: Path, steps: Sequence[Step], rig: Rig) -> None:
                 f"{folder / 'steps.csv'} step {step.number}: {total:.6g} kg lie on the pans, and all masses of the rig are "
                 f"{most:.6g} kg; state the unit in the header, as mass_positive [g], or give the rig its [[masses]]"
             )
-
-
-def _deviations(folder: Path, steps: Sequence[Step]) -> tuple[str, ...] | None:
-    plan = inside(folder, PLAN)
-    return tuple(map(str, check(steps, read_steps(plan)))) if plan.exists() else None
-
-
-def _look(folder: Path, step: Step, rig: Rig, turn: Callable[[str], None]) -> Frame:
-    name = str(step.image)
-    turn(name)
-    return replace(look(photograph_of(step, folder), camera=rig.camera), name=name)  # as the steps name it, folder and all
 
 
 def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = ()) -> list[Loop]:
@@ -199,26 +197,7 @@ def loops(steps: Sequence[Step], rig: Rig, angles: Angles | Iterable[Angles] = (
     ([0.3, 0.0, -0.3, 0.0, 0.3], [0.072, 0.0, -0.072, 0.0, 0.072])
     """
     pictures = [angles] if isinstance(angles, Angles) else list(angles)
-    return [loop for place, of_place in _places(steps).items() for loop in _loops_of(place, of_place, rig, pictures)]
-
-
-def _places(steps: Sequence[Step]) -> dict[Place, list[Step]]:
-    """The steps of each position and unit, in the order made."""
-    found: dict[Place, list[Step]] = {}
-    for step in steps:
-        found.setdefault((step.position, step.unit), []).append(step)
-    return found
-
-
-def _at_peak(steps: Sequence[Step]) -> str:
-    """Return the first photograph at the largest torque among those with an angle."""
-    loads = [step.mass_positive - step.mass_negative if step.torque is None else step.torque for step in steps]
-    return str(steps[int(np.argmax(loads))].image)
-
-
-def _called(place: Place) -> str:
-    position, unit = place
-    return f"{f'unit {unit}, ' if unit else ''}flexspline at {degrees(position):.6g} degrees"
+    return [loop for place, of_place in by_place(steps).items() for loop in _loops_of(place, of_place, rig, pictures)]
 
 
 def _loops_of(place: Place, steps: Sequence[Step], rig: Rig, pictures: Sequence[Angles]) -> list[Loop]:
@@ -232,19 +211,23 @@ def _loops_of(place: Place, steps: Sequence[Step], rig: Rig, pictures: Sequence[
     if zero is not None:
         own = own - own[zero]
     sigma = np.array([reading.sigma for reading in readings])[rows]
+    named = {step.image for step in steps}
+    angle_scale = max((each.scale for each in pictures if named & {frame.name for frame in each.useful}), default=0.0)
+    times, temperatures = ([getattr(steps[row], name) for row in rows] for name in ("time", "temperature"))
+    time, temperature = (None if None in values else values for values in (times, temperatures))
     whole = Loop(
         own[rows],
         torque.shaft[rows],
         side=rig.side,
-        name=_called(place),
+        name=place_words(place),
         angle_sigma=sigma if np.any(sigma > 0.0) else scatter(own[rows], torque.shaft[rows]),
         torque_sigma=torque.sigma[rows],
-        angle_scale=_scale(steps, pictures),
+        angle_scale=angle_scale,
         torque_scale=torque.scale,
         friction_sigma=torque.friction_sigma,
         compliance_sigma=rig.compliance.sigma,
-        time=_series([steps[row].time for row in rows]),
-        temperature=_series([steps[row].temperature for row in rows]),
+        time=time,
+        temperature=temperature,
         position=place[0],
         unit=place[1],
         remarks=tuple(_remarks(steps, readings, torque, pictures, rig)),
@@ -263,17 +246,6 @@ def _readings(steps: Sequence[Step], pictures: Sequence[Angles]) -> tuple[list[A
     found = [seen.get(step.image or "", nothing if step.angle is None else AngleReading(step.angle, 0.0)) for step in steps]
     references = {angles.reference for angles in pictures}
     return found, next((row for row, step in enumerate(steps) if step.image in references), None)
-
-
-def _scale(steps: Sequence[Step], pictures: Sequence[Angles]) -> float:
-    """Return the error that the angles of the photographs share, relative to the angle."""
-    named = {step.image for step in steps}
-    return max((each.scale for each in pictures if named & {frame.name for frame in each.useful}), default=0.0)
-
-
-def _series(values: Sequence[float | None]) -> list[float] | None:
-    known = [value for value in values if value is not None]
-    return known if len(known) == len(values) else None
 
 
 def _cycles(loop: Loop) -> list[Loop]:
@@ -312,8 +284,12 @@ def _remarks(
 
 def _remarks_on_motion(steps: Sequence[Step], readings: Sequence[AngleReading], torque: Torque) -> Iterator[str]:
     """Steps that the pulleys held, and steps that went against the torque."""
+
+    def load(step: Step) -> tuple[float, float, float | None]:
+        return step.mass_positive, step.mass_negative, step.torque
+
     held = [step.number for step, sense in zip(steps[1:], torque.sense[1:], strict=True) if sense == 0.0]
-    changed = [after.number for before, after in pairwise(steps) if _load(before) != _load(after)]
+    changed = [after.number for before, after in pairwise(steps) if load(before) != load(after)]
     if stuck := [str(number) for number in held if number in changed]:
         yield (
             f"the pulleys hold more than the change of torque at step {listed(stuck)}: the torque on the shaft is less than "
@@ -326,5 +302,95 @@ def _remarks_on_motion(steps: Sequence[Step], readings: Sequence[AngleReading], 
             yield f"{words}, by {degrees(abs(turned)):.3g} degrees"
 
 
-def _load(step: Step) -> tuple[float, float, float | None]:
-    return step.mass_positive, step.mass_negative, step.torque
+@dataclass(frozen=True)
+class Couple(Statement):
+    """Shift of the centre of a turning shaft with the torque.
+
+    Attributes:
+        shift: of the centre per torque, right and up in the picture [px/(N.m)]
+        sigma: standard deviation of each of both [px/(N.m)]
+        rms: distance of the points from the fit [px]
+        scale: size of a pixel at the target [m]; None where the distance of the markers is not known
+        span: of the torque [N.m]
+    """
+
+    shift: tuple[float, float]
+    sigma: float
+    rms: float
+    scale: float | None
+    span: float
+
+    @property
+    def size(self) -> float:
+        """Return the size of the shift [px/(N.m)]."""
+        return float(np.hypot(*self.shift))
+
+    @property
+    def pure(self) -> bool:
+        """True if the shift can be chance."""
+        return self.size <= MIN_SHIFT_SIGMA * self.sigma
+
+    def _headline(self) -> str:
+        moved = f"{self.size * self.span:.3g} px"
+        if self.scale is not None:
+            moved += f" ({1e6 * self.size * self.span * self.scale:.3g} um)"
+        least = f"± {self.sigma * self.span:.2g} px over the span of the torque"
+        if self.pure:
+            return f"the centre of rotation stays within {least}: nothing speaks against a pure couple"
+        return f"the centre of rotation moves by {moved} {least}: the torque was no pure couple, or the shaft's bearing yields"
+
+
+def couple(middle: Array, angle: Array, torque: Array, scale: float | None = None) -> Couple:
+    """Fit the centre, the arm and the shift to the points midway between the markers.
+
+    Args:
+        middle: of each photograph, right and up [px], shape (n, 2), n >= 6
+        angle: of the shaft [rad], shape (n,)
+        torque: on the shaft [N.m], shape (n,)
+        scale: size of a pixel at the target [m]
+
+    Raises:
+        ValueError: too few photographs, or torque and angle do not separate the three
+
+    >>> angle, torque = np.array([0.0, -0.3, -0.9, -1.0, -0.6, -0.1]), np.array([0.3, 0.1, -0.2, -0.3, 0.0, 0.3])
+    >>> arm = np.stack([30.0 * np.cos(angle), 30.0 * np.sin(angle)], axis=1)
+    >>> found = couple(arm + [320.0, -240.0] + np.outer(torque, [2.0, 0.0]), angle, torque)
+    >>> round(found.size, 6), found.pure
+    (2.0, False)
+    """
+    n = len(angle)
+    if n < MIN_PHOTOGRAPHS:
+        raise ValueError(f"the centre of rotation needs {MIN_PHOTOGRAPHS} photographs or more, not {n}")
+    one, zero, c, s = np.ones(n), np.zeros(n), np.cos(angle), np.sin(angle)
+    right = np.stack([one, zero, c, -s, torque, zero], axis=1)
+    up = np.stack([zero, one, s, c, zero, torque], axis=1)
+    design, seen = np.concatenate([right, up]), np.concatenate([middle[:, 0], middle[:, 1]])
+    fit, _, rank, _ = np.linalg.lstsq(design, seen)
+    if rank < 6:
+        raise ValueError("torque and angle change together: they do not separate a shift of the shaft from its turn")
+    residual = seen - design @ fit
+    variance = float(residual @ residual) / (2 * n - 6)
+    sigma = float(np.sqrt(variance * normal_inverse(design)[4, 4]))
+    return Couple((float(fit[4]), float(fit[5])), sigma, float(np.sqrt(np.mean(residual**2))), scale, float(np.ptp(torque)))
+
+
+def remarks_on_couple(angles: Angles, steps: Sequence[Step], torque: Torque, rig: Rig) -> Iterator[str]:
+    """Yield a remark if the centre of rotation contradicts a pure couple; none if the test does not determine it."""
+    if not {frame.name for frame in angles.useful} & {step.image for step in steps}:
+        return
+    of_image = {step.image: float(each) for step, each in zip(steps, torque.shaft, strict=True)}
+    rows = [row for row, frame in enumerate(angles.useful) if np.isfinite(of_image.get(frame.name, np.nan))]
+    frames = [angles.useful[row] for row in rows]
+    points = [np.array([[marker.x, marker.y] for marker in frame.markers or ()]) for frame in frames]
+    centres = np.array(
+        [flat(pair, rig.camera, (frame.size[1], frame.size[0])) for pair, frame in zip(points, frames, strict=True)]
+    ).reshape(-1, 2, 2)
+    apart = float(np.mean(np.hypot(*(centres[:, 1] - centres[:, 0]).T))) if rows else 0.0
+    scale = rig.markers_distance.value / apart if rig.markers_distance is not None and apart > 0.0 else None
+    middle, torques = centres.mean(axis=1) * [1.0, -1.0], np.array([of_image[frame.name] for frame in frames])
+    try:
+        found = couple(middle, angles.angle[rows], torques, scale)
+    except ValueError:
+        return
+    if not found.pure:
+        yield str(found)

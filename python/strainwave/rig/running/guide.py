@@ -1,24 +1,28 @@
-"""Guides whoever makes a torsion test, step by step, and writes each down as soon as it is done."""
+"""Guide for whoever makes a torsion test: pictures of a camera or a folder, step by step, each recorded at once."""
 
 from __future__ import annotations
 
 import os
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
+from strainwave.files.budget import RefusedFile, read_regular
 from strainwave.files.writing import DRAFT
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import FILE, append_step, read_steps
-from strainwave.rig.running.sources import PictureSource
+from strainwave.messages import one_line
+from strainwave.rig.bench.steps import FILE, Step, append_step, read_steps
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES
+from strainwave.rig.vision.image import pictures_in
 
 AT_REST_PROBABILITY = 0.99  # share of readings at rest that count as at rest [1]
 ZERO_CELSIUS = 273.15  # K
+Array = NDArray[np.float64]
 
 
 class Look(NamedTuple):
@@ -33,6 +37,22 @@ class Look(NamedTuple):
     angle: float
     sigma: float
     fault: str = ""
+
+
+class Point(NamedTuple):
+    """A photograph of a test that is being run.
+
+    Attributes:
+        name: of the photograph, or of the step
+        torque: on the shaft [N.m]; None if neither the record nor a plan contains it
+        look: its angle from the first photograph of its position and unit
+        warnings: what makes it doubtful
+    """
+
+    name: str
+    torque: float | None
+    look: Look
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -155,14 +175,6 @@ def settle(
         pause(settling.interval)
 
 
-def began(steps: Sequence[Step], folder: Path) -> float:
-    """Return the time at which a test began [s], on the clock of its photographs; now if it has not begun."""
-    for step in steps:
-        if step.image is not None and step.time is not None and (folder / step.image).exists():
-            return (folder / step.image).stat().st_mtime - step.time
-    return time.time()
-
-
 class Talk(Protocol):
     """Speaks with whoever stands at the rig."""
 
@@ -209,7 +221,10 @@ def conduct(
         ValueError: what was done before does not belong to this plan
     """
     steps = done_before(plan, folder)
-    start, looks = began(steps, folder), dict[int, Look]()
+    looks = dict[int, Look]()
+    timed = [step for step in steps if step.image is not None and step.time is not None and (folder / step.image).exists()]
+    # On the clock of the photographs.
+    start = (folder / str(timed[0].image)).stat().st_mtime - (timed[0].time or 0.0) if timed else time.time()
     for planned in plan[len(steps) :]:
         load(planned.number)
         answered = _answer(talk, talk.ask(planned, steps[-1] if steps else None))
@@ -219,7 +234,10 @@ def conduct(
                 return steps
             image = f"{planned.number:04}{rest.picture.suffix}"
             os.replace(rest.picture, folder / image)
-        steps.append(_made(planned, answered, image, time.time() - start))
+        step = replace(planned, image=image, time=round(time.time() - start, 1), temperature=answered.temperature)
+        if answered.masses is not None:
+            step = replace(step, mass_positive=answered.masses[0], mass_negative=answered.masses[1])
+        steps.append(step)
         append_step(steps[-1], folder)
         looks[planned.number] = rest.look
         talk.done(steps, looks)
@@ -236,7 +254,7 @@ def done_before(plan: Sequence[Step], folder: Path) -> list[Step]:
         return []
     steps = read_steps(folder)
     for step, planned in zip(steps, plan, strict=False):
-        if (step.number, step.position, step.unit) != (planned.number, planned.position, planned.unit):
+        if (step.number, step.place) != (planned.number, planned.place):
             raise ValueError(f"{folder / FILE}: step {step.number} does not belong to the plan; give another folder as --out")
     if len(steps) > len(plan):
         raise ValueError(f"{folder / FILE} holds {len(steps)} steps, the plan {len(plan)}; give another folder as --out")
@@ -274,8 +292,85 @@ def _at_rest(
     return Rest(None, Look(np.nan, np.nan), False, np.nan), answered
 
 
-def _made(planned: Step, answered: Reply, image: str, since: float) -> Step:
-    step = replace(planned, image=image, time=round(since, 1), temperature=answered.temperature)
-    if answered.masses is not None:
-        step = replace(step, mass_positive=answered.masses[0], mass_negative=answered.masses[1])
-    return step
+class PictureSource(Protocol):
+    """Source of pictures of the target, one after the other."""
+
+    def take(self, folder: Path) -> Path | None:
+        """Put a new picture into a folder and return its path; None if there is none yet."""
+
+
+class Device:
+    """A camera that opencv can open, by its number.
+
+    Raises:
+        ImportError: opencv is not installed
+        OSError: the camera cannot be opened
+    """
+
+    def __init__(self, number: int) -> None:
+        try:
+            import cv2
+        except ImportError:
+            raise ImportError(
+                "a camera needs opencv, which is not installed; install strainwave[video], "
+                "or let another program fill a folder and give that folder as --camera"
+            ) from None
+        self.number = number
+        self.capture: Any = cv2.VideoCapture(number)
+        if not self.capture.isOpened():
+            raise OSError(f"camera {number} cannot be opened; is it plugged in, and in use by no other program?")
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now, as PNG; `OSError` if the camera gives none."""
+        from PIL import Image
+
+        came, picture = self.capture.read()
+        if not came:
+            raise OSError(f"camera {self.number} gives no picture; is it still plugged in?")
+        path = folder / "picture.png"
+        Image.fromarray(np.ascontiguousarray(picture[..., ::-1] if picture.ndim == 3 else picture)).save(path)
+        return path
+
+
+@dataclass
+class Filled:
+    """A folder that another program fills; pictures that lie there already are left aside, and symbolic links.
+
+    Raises:
+        FileNotFoundError: there is no such folder
+    """
+
+    folder: Path
+    seen: set[tuple[str, int, int]] = field(default_factory=set)
+    sizes: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not self.folder.is_dir():
+            raise FileNotFoundError(f"--camera {self.folder}: there is no such folder")
+        self.seen |= {self._mark(path) for path in self._pictures()}
+
+    def take(self, folder: Path) -> Path | None:
+        """A copy of the newest picture that is new, once it has not grown since the last look."""
+        new = [path for path in self._pictures() if self._mark(path) not in self.seen and self._complete(path)]
+        self.seen |= {self._mark(path) for path in new}
+        if not new:
+            return None
+        copy = folder / f"picture{new[-1].suffix.lower()}"
+        try:
+            copy.write_bytes(read_regular(new[-1], MAX_PICTURE_BYTES))
+        except RefusedFile as error:
+            raise ValueError(one_line(f"--camera {new[-1]} {error}")) from None
+        return copy
+
+    def _pictures(self) -> list[Path]:
+        return sorted(pictures_in(self.folder), key=lambda path: (path.stat().st_mtime_ns, path.name))
+
+    def _complete(self, path: Path) -> bool:
+        size, before = path.stat().st_size, self.sizes.get(path.name)
+        self.sizes[path.name] = size
+        return size > 0 and size == before
+
+    @staticmethod
+    def _mark(path: Path) -> tuple[str, int, int]:
+        found = path.stat()
+        return path.name, found.st_mtime_ns, found.st_size

@@ -5,32 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from strainwave.rig.bench.setup import Camera, Rig
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import FILE, read_steps
-from strainwave.rig.running.guide import Look
-from strainwave.rig.vision.angle import Frame, follow, look
+from strainwave.rig.bench.steps import FILE, Step, read_steps
+from strainwave.rig.bench.torque import torque_of_masses
+from strainwave.rig.running.guide import Look, Point
+from strainwave.rig.vision.angle import follow
 from strainwave.rig.vision.image import by_number, pictures_in
-
-
-class Watched(NamedTuple):
-    """A photograph of a test that is being run.
-
-    Attributes:
-        name: of its file
-        torque: on the shaft [N.m]; None if neither the record nor a plan contains it
-        look: the angle from the first photograph of its position and unit
-        warnings: what makes it doubtful
-    """
-
-    name: str
-    torque: float | None
-    look: Look
-    warnings: tuple[str, ...]
+from strainwave.rig.vision.marker import Frame, look
 
 
 @dataclass
@@ -58,7 +42,7 @@ class Watch:
         if not self.folder.is_dir():
             raise FileNotFoundError(f"{self.folder}: there is no such folder")
 
-    def new(self) -> list[Watched]:
+    def new(self) -> list[Point]:
         """The photographs that came since the last look, once they have been written whole.
 
         Raises:
@@ -70,7 +54,7 @@ class Watch:
         names = [name for name in self._pictures() if name not in known and (name in recorded or self._complete(name))]
         camera = Camera() if self.rig is None else self.rig.camera
         self.frames += [look(self.folder / name, camera=camera) for name in names]
-        return [self._watched(name, recorded, camera) for name in names]
+        return [self._point(name, recorded, camera) for name in names]
 
     def _pictures(self) -> list[str]:
         return sorted((each.name for each in pictures_in(self.folder)), key=by_number)
@@ -80,40 +64,21 @@ class Watch:
         self.sizes[name] = size
         return size > 0 and size == before
 
-    def _steps(self, recorded: dict[str | None, Step]) -> list[Step | None]:
-        """Return the step of each photograph so far."""
-        return [recorded.get(frame.name) or self._planned(place) for place, frame in enumerate(self.frames)]
-
-    def _planned(self, place: int) -> Step | None:
-        return self.plan[place] if place < len(self.plan) else None
-
-    def _watched(self, name: str, recorded: dict[str | None, Step], camera: Camera) -> Watched:
-        steps = self._steps(recorded)
+    def _point(self, name: str, recorded: dict[str | None, Step], camera: Camera) -> Point:
+        planned = [*self.plan, *[None] * len(self.frames)]
+        steps = [recorded.get(frame.name) or step for frame, step in zip(self.frames, planned, strict=False)]
         place = [frame.name for frame in self.frames].index(name)
         mine = steps[place]
-        alike = [frame for frame, step in zip(self.frames[: place + 1], steps, strict=False) if _place(step) == _place(mine)]
+        alike = [
+            frame
+            for frame, step in zip(self.frames[: place + 1], steps, strict=False)
+            if (step and step.place) == (mine and mine.place)
+        ]
         frame, found = angle_of(alike, camera)
-        return Watched(name, None if mine is None else _torque(self.rig, mine), found, frame.warnings)
-
-
-def _place(step: Step | None) -> tuple[float, str] | None:
-    return None if step is None else (step.position, step.unit)
-
-
-def _torque(rig: Rig | None, step: Step) -> float | None:
-    if step.torque is not None or rig is None:
-        return step.torque
-    return torque_of_masses(rig, step)
-
-
-def torque_of_masses(rig: Rig, step: Step) -> float:
-    """Torque of what lies on the pans at the full radius, pulleys left out [N.m]: what is shown while a test is being made.
-
-    >>> from strainwave.rig import load
-    >>> round(torque_of_masses(load("couple-rig"), Step(1, mass_positive=0.35)), 4)
-    0.3432
-    """
-    return (step.mass_positive - step.mass_negative) * rig.gravity.value * rig.disk_radius.value
+        torque = None if mine is None else mine.torque
+        if mine is not None and torque is None and self.rig is not None:
+            torque = torque_of_masses(self.rig, mine)
+        return Point(name, torque, found, frame.warnings)
 
 
 @dataclass
@@ -134,9 +99,9 @@ class Reader:
     def __call__(self, picture: Path, step: Step) -> Look:
         """Return the angle of a picture of a step; the last picture of a step is its photograph."""
         frame = look(picture, camera=self.camera)
-        place = (step.position, step.unit)
+        place = step.place
         before = [
-            other for number, (made, other) in sorted(self.frames.items()) if number < step.number and _place(made) == place
+            other for number, (made, other) in sorted(self.frames.items()) if number < step.number and made.place == place
         ]
         if not before and frame.markers is not None:
             before = [self.first.setdefault(place, frame)]

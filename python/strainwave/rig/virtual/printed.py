@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 
 from strainwave import arguments, hysteresis, kinematics, stiffness
 from strainwave._core import Gear
+from strainwave.files.gear_set import GearSet
+from strainwave.rig.bench.steps import Step
 
 # The torsional stiffness article, Table 2: degrees of the flexspline in its mount: N.m/rad of positive unloading, negative
 # loading, negative unloading and positive loading; width in degrees. All at the input of a gear 1:100, up to +-0.36 N.m.
@@ -14,6 +17,7 @@ TABLE_2 = {
     60: (4.36, 0.29, 3.59, 0.33, 51.9),
     120: (4.19, 0.32, 5.08, 0.33, 49.4),
 }
+ARTICLE = "torsional-stiffness-article"  # the gears whose loops are the rows of the torsional stiffness article's Table 2
 PEAK_TORQUE = 0.36  # N.m
 SOFT_ONSET = 0.03  # N.m, assumed: torque at which the soft regimes begin, which the table does not state (its erratum 4)
 NEGLIGIBLE_STIFFNESS = 1e-6  # N.m/rad, of the spring of a gear whose torque is all hysteresis
@@ -101,3 +105,30 @@ def gear_of_regimes(
     return Gear(
         kinematics=kinematics.PlainRatio(reduction=ratio), stiffness=stiffness.Linear(k=NEGLIGIBLE_STIFFNESS), hysteresis=law
     )
+
+
+def gear_named(name: str) -> Gear | Callable[[Step], Gear]:
+    """The gear of a set or a gear file; or, of the torsional stiffness article, the gear for the position of each step.
+
+    Raises:
+        ValueError: there is no such gear
+    """
+    if name == ARTICLE:
+        return lambda step: printed_gear(round(math.degrees(step.position)))
+    return GearSet.read(name).gear
+
+
+def narrower(positions: Sequence[float], peak: float) -> list[str]:
+    """Return in words the rows of the article's Table 2 that do not reach their printed width under a peak torque [N.m].
+
+    >>> narrower([0.0], 0.343)
+    []
+    >>> print(*narrower([math.radians(60.0)], 0.343))
+    at 60 degrees the torsional stiffness article's loop has its 51.9 degrees from 0.353 N.m on; at 0.343 N.m it is narrower
+    """
+    return [
+        f"at {place} degrees the torsional stiffness article's loop has its {TABLE_2[place][-1]:g} degrees from "
+        f"{peak_needed(place):.3f} N.m on; at {peak:.3f} N.m it is narrower"
+        for place in (round(math.degrees(position)) for position in positions)
+        if peak_needed(place) > peak
+    ]

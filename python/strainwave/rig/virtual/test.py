@@ -23,8 +23,7 @@ from strainwave.presentation import Presented
 from strainwave.progress import Progress, by_count
 from strainwave.rig.bench.rig_file import write_rig
 from strainwave.rig.bench.setup import Rig
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import append_step
+from strainwave.rig.bench.steps import Step, append_step
 from strainwave.rig.virtual.loading import Loading, load_by_steps
 from strainwave.rig.virtual.render import Scene, render, usual_scene
 
@@ -148,13 +147,21 @@ def simulate_test(
     ]
     weighed = _weighed(recorded, rig, np.random.default_rng([seed, 0])) if mass_errors else recorded
     gears, loadings = _loaded(gear, rig, weighed, {"wait": wait, "settling": settling, "virgin": virgin})
-    test = _truth(folder, recorded, weighed, loadings)
+    if not loadings:
+        raise ValueError("steps: a test needs one step or more")
+    channels = ("seen", "applied", "shaft", "elastic", "twist")
+    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in channels]
+    columns += [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
+    test = VirtualTest(folder, tuple(recorded), *columns)
     names = ["rig.toml", "steps.csv", "truth.json", *(f"truth-{number}.toml" for number in range(1, len(gears) + 1))]
     with making(folder):
-        _check_empty(folder)
+        for name in ("rig.toml", "steps.csv", "truth.json"):
+            if (folder / name).exists():
+                raise ValueError(f"{folder} holds a test already ({name}); give another folder")
         with _whole(folder, [*names, *(str(step.image) for step in recorded)]):
             _write(test, recorded, gears, scene, seed, faults, stated or rig, progress)
-    return _without_skipped(test, faults)
+    kept = [k for k, step in enumerate(recorded) if faults.get(step.number) != "skipped"]
+    return VirtualTest(folder, tuple(recorded[k] for k in kept), *(column[kept] for column in columns))
 
 
 @contextmanager
@@ -184,12 +191,21 @@ def _write(
     for number, each in enumerate(gears, 1):
         save(each, folder / f"truth-{number}.toml", name=f"Gear {number} of a virtual test", source=SOURCE)
     _write_truth(test, scene, seed, faults)
+    angles = test.angle.tolist()
+    for k, step in enumerate(recorded):
+        if faults.get(step.number) == "swapped":
+            angles[k], angles[k + 1] = angles[k + 1], angles[k]
+    scenes = {
+        "blurred": replace(scene, blur=FAULT_BLUR),
+        "over-exposed": replace(scene, exposure=FAULT_EXPOSURE * scene.exposure),
+        "marker missing": replace(scene, markers=(scene.markers[0], scene.ground)),
+    }
     with by_count(progress, "drawing pictures", len(recorded)) as report:
-        for k, (step, shown) in enumerate(zip(recorded, _shown(recorded, faults), strict=True), 1):
-            fault = faults.get(step.number)
+        for k, (step, angle) in enumerate(zip(recorded, angles, strict=True), 1):
+            fault = faults.get(step.number, "")
             if fault != "skipped":
                 noise = np.random.default_rng([seed, step.number])
-                _write_picture(render(_faulty(scene, fault), float(test.angle[shown]), noise), folder / str(step.image))
+                _write_picture(render(scenes.get(fault, scene), angle, noise), folder / str(step.image))
                 append_step(step, folder)
             if report is not None:
                 report(k)
@@ -204,12 +220,6 @@ def _checked(faults: Mapping[int, Fault], steps: Sequence[Step]) -> dict[int, Fa
         if fault == "swapped" and number == numbers[-1]:
             raise ValueError(f"faults[{number}]: the last step has no next one to be swapped with")
     return dict(faults)
-
-
-def _check_empty(folder: Path) -> None:
-    for name in ("rig.toml", "steps.csv", "truth.json"):
-        if (folder / name).exists():
-            raise ValueError(f"{folder} holds a test already ({name}); give another folder")
 
 
 # What is true
@@ -245,26 +255,11 @@ def _loaded(
 ) -> tuple[list[Gear], list[Loading]]:
     """Return the gear and its loading for each position and unit in turn."""
     gears, loadings = [], []
-    for _, group in groupby(steps, key=lambda step: (step.position, step.unit)):
+    for _, group in groupby(steps, key=lambda step: step.place):
         own = list(group)
         gears.append(gear if isinstance(gear, Gear) else gear(own[0]))
         loadings.append(load_by_steps(gears[-1], rig, own, **given))
     return gears, loadings
-
-
-def _truth(folder: Path, recorded: Sequence[Step], weighed: Sequence[Step], loadings: Sequence[Loading]) -> VirtualTest:
-    if not loadings:
-        raise ValueError("steps: a test needs one step or more")
-    names = ("seen", "applied", "shaft", "elastic", "twist")
-    columns = [np.concatenate([getattr(each, name) for each in loadings]) for name in names]
-    masses = [np.array([getattr(step, name) for step in weighed]) for name in ("mass_positive", "mass_negative")]
-    return VirtualTest(folder, tuple(recorded), *columns, *masses)
-
-
-def _without_skipped(test: VirtualTest, faults: Mapping[int, Fault]) -> VirtualTest:
-    kept = [k for k, step in enumerate(test.steps) if faults.get(step.number) != "skipped"]
-    columns = [getattr(test, name)[kept] for name in COLUMNS]
-    return VirtualTest(test.folder, tuple(test.steps[k] for k in kept), *columns)
 
 
 def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int, Fault]) -> None:
@@ -286,25 +281,6 @@ def _write_truth(test: VirtualTest, scene: Scene, seed: int, faults: Mapping[int
 # Photographs
 
 
-def _shown(steps: Sequence[Step], faults: Mapping[int, Fault]) -> list[int]:
-    """Return the index of the state that each photograph shows."""
-    shown = list(range(len(steps)))
-    for k, step in enumerate(steps):
-        if faults.get(step.number) == "swapped":
-            shown[k], shown[k + 1] = shown[k + 1], shown[k]
-    return shown
-
-
-def _faulty(scene: Scene, fault: Fault | None) -> Scene:
-    if fault == "blurred":
-        return replace(scene, blur=FAULT_BLUR)
-    if fault == "over-exposed":
-        return replace(scene, exposure=FAULT_EXPOSURE * scene.exposure)
-    if fault == "marker missing":
-        return replace(scene, markers=(scene.markers[0], scene.ground))
-    return scene
-
-
 def _write_picture(picture: NDArray[Any], path: Path) -> None:
     from PIL import Image
 
@@ -312,3 +288,53 @@ def _write_picture(picture: NDArray[Any], path: Path) -> None:
     Image.fromarray(picture).save(content, "png", compress_level=1)
     with replacing(path) as file:
         file.write(content.getvalue())
+
+
+@dataclass
+class Virtual:
+    """A virtual rig: the scene of a target whose shaft comes to rest at the angle of a step.
+
+    Args:
+        scene: what is seen
+        angles: of the shaft at rest, step by step [rad], shape (n,)
+        random: gives the noise of the pictures
+        settling: share of the way that is left from one picture to the next [1]
+    """
+
+    scene: Scene
+    angles: Array
+    random: np.random.Generator
+    settling: float = 0.1
+    step: int = 0
+    angle: float = 0.0
+
+    def load(self, number: int) -> None:
+        """Lays on what a step asks for, by its number from 1."""
+        self.angle = float(self.angles[number - 2]) if number > 1 else float(self.angles[0])
+        self.step = number - 1
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now; the shaft is nearer to rest with each."""
+        path = folder / "picture.png"
+        _write_picture(render(self.scene, self.angle, self.random), path)
+        rest = float(self.angles[self.step])
+        self.angle = rest + self.settling * (self.angle - rest)
+        return path
+
+
+def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gear], seed: int | None = None) -> Virtual:
+    """Pictures of a gear on a virtual rig, which comes to rest at each step of a plan.
+
+    Args:
+        rig: the rig as it is
+        steps: the plan
+        gear: which gear, or for each position and unit another one: a function of a step
+        seed: of the noise; another one each time if None
+
+    >>> from strainwave.rig import Step, load
+    >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("torsional-stiffness-article"))
+    >>> source.angles.round(4).tolist()
+    [0.0, -0.0109]
+    """
+    angles = np.concatenate([loading.angle for loading in _loaded(gear, rig, steps, {})[1]])
+    return Virtual(usual_scene(rig), angles, np.random.default_rng(seed))

@@ -1,22 +1,28 @@
-"""Circular markers in a picture."""
+"""Round markers in a photograph of the target: spots by local brightness, the edge of each, and the pair of them."""
 
 from __future__ import annotations
 
 import cmath
+import hashlib
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from math import inf
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import arguments
+from strainwave.files.budget import RefusedFile, read_regular
+from strainwave.messages import one_line
 from strainwave.presentation import Presented
 from strainwave.rig.bench.setup import Camera
-from strainwave.rig.vision.blob import blobs
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, in_picture
-from strainwave.rig.vision.edge import WIDE_ARC, Edge, edge, fit_points, oblong
-from strainwave.rig.vision.outline import Grey, outline
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey
+from strainwave.rig.vision.edge import WIDE_ARC, Edge, edge, fit_points, oblong, outline
+from strainwave.rig.vision.image import Image, read_image
 
 Array = NDArray[np.float64]
 SMALLEST_RADIUS = 6.0  # px, unless another is given
@@ -24,6 +30,132 @@ _LEAST_ARC, _SHORTEST_ARC = 0.5, 0.25  # share of the edge [1]: of a marker, and
 _MIN_CONTRAST_RATIO = 0.3  # contrast of an edge over the contrast around it [1]
 _MAX_RESIDUAL_SHARE = 0.02  # residual of an edge over its radius [1]
 _MAX_SHARE_IF_SMALL, _MAX_RESIDUAL_IF_SMALL = 0.05, 0.5  # of a small marker: residual over its radius [1], and residual in px
+_CELLS_PER_BLOCK = 4  # each way; the local brightness is the mean of a block
+_MIN_CONTRAST_SHARE = 0.15  # contrast of a spot, as a share of the contrast of the picture [1]
+_MIN_CONTRAST_NOISE = 4.0  # contrast of a spot over the noise of a cell [1]
+MAX_SPOTS = 1000  # whose edges are looked at, which takes a few milliseconds each; a target has two
+MAX_AREAS = 50_000  # connected cells of the size of a spot, of any shape
+_MIN_ARC_SHARE = 0.9  # share of an edge that must be seen [1]; a warning gives a smaller one
+_MAX_CLIPPED_SHARE = 0.02  # share of pixels at an end of the scale around an edge [1]; a warning gives a larger one
+_MAX_BLUR_SHARE = 0.2  # blur over radius [1]; beyond it, inside and outside cannot be distinguished
+_MAX_RADIUS_DIFFERENCE = 0.3  # relative difference of the radii of two markers [1]
+_MAX_MARKERS_SHOWN = 4
+
+
+class TooManySpots(ValueError):  # noqa: N818 - its message is why a picture is of no use
+    """A picture has more spots that may be markers than can be looked at."""
+
+
+@dataclass(frozen=True)
+class Blob:
+    """A connected spot that is darker, or brighter, than what is around it.
+
+    Attributes:
+        x, y: the middle of its box [px]
+        radius: half the geometric mean of the sides of its box [px]
+        dark: whether it is the darker one
+        whole: whether it lies within the picture with all its edge
+        contrast: of the brightest and the darkest around it, of the full scale
+    """
+
+    x: float
+    y: float
+    radius: float
+    dark: bool
+    whole: bool
+    contrast: float
+
+
+def blobs(grey: Grey, low: float, high: float) -> list[Blob]:
+    """Spots whose radius lies between `low` and `high` [px] and whose box and area are not those of anything but a disc.
+
+    A cell is dark if it lies below the middle between the darkest and the brightest block around it, within half the picture.
+
+    Raises:
+        TooManySpots: there are more than `MAX_SPOTS`
+    """
+    side = int(np.clip(low / 2.0, 1.0, 8.0))
+    cells = averaged(grey, side)
+    middle, contrast, clear = _middle(cells)
+    found = []
+    for dark in (True, False):
+        mask = (cells < middle) if dark else (cells > middle)
+        found += list(_spots(mask & clear, contrast, side, dark, low, high))
+    if len(found) > MAX_SPOTS:
+        raise TooManySpots(_too_many(len(found), MAX_SPOTS))
+    return found
+
+
+def _too_many(count: int, most: int) -> str:
+    return f"{count} spots may be markers, and {most} can be looked at; limit them by radius=(least, most) in px"
+
+
+def averaged(grey: Grey, side: int) -> Grey:
+    """Means over squares of `side` pixels; what is left over at the right and the lower edge is cut off.
+
+    >>> averaged(np.array([[0.0, 1.0, 5.0], [1.0, 2.0, 5.0]], np.float32), 2)
+    array([[1.]], dtype=float32)
+    """
+    if side == 1:
+        return grey
+    height, width = (n // side * side for n in grey.shape)
+    rows = grey[0:height:side, :width].copy()
+    for i in range(1, side):
+        rows += grey[i:height:side, :width]
+    cells = rows[:, 0::side].copy()
+    for i in range(1, side):
+        cells += rows[:, i::side]
+    cells *= np.float32(1.0 / side**2)
+    return cells
+
+
+def _middle(cells: Grey) -> tuple[Grey, Grey, NDArray[np.bool_]]:
+    """The brightness that parts dark from bright at each cell; the contrast around each block; where that is clear."""
+    from scipy.ndimage import maximum_filter, minimum_filter
+
+    height, width = cells.shape
+    padded = np.pad(cells, ((0, -height % _CELLS_PER_BLOCK), (0, -width % _CELLS_PER_BLOCK)), mode="edge")
+    blocks = averaged(padded, _CELLS_PER_BLOCK)
+    window = max(3, min(blocks.shape) // 2)
+    brightest, darkest = maximum_filter(blocks, window), minimum_filter(blocks, window)
+    contrast = brightest - darkest
+    least = max(_MIN_CONTRAST_SHARE * float(blocks.max() - blocks.min()), _MIN_CONTRAST_NOISE * _noise(cells))
+
+    def spread(values: NDArray[np.generic]) -> NDArray[np.generic]:
+        return np.repeat(np.repeat(values, _CELLS_PER_BLOCK, axis=0), _CELLS_PER_BLOCK, axis=1)[:height, :width]
+
+    middle: Grey = spread((brightest + darkest) * np.float32(0.5)).astype(np.float32, copy=False)
+    return middle, contrast, spread(contrast > least).astype(bool, copy=False)
+
+
+def _noise(cells: Grey) -> float:
+    """Return the noise of a cell, from differences of neighbours; edges are few and do not change the median."""
+    sample = cells[:: max(1, cells.shape[0] // 32)]
+    return float(np.median(np.abs(np.diff(sample, axis=1))) / (0.6745 * np.sqrt(2.0)))
+
+
+def _spots(mask: NDArray[np.bool_], contrast: Grey, side: int, dark: bool, low: float, high: float) -> Iterator[Blob]:
+    from scipy.ndimage import find_objects, label
+
+    labels, count = label(mask)
+    areas = np.bincount(labels.ravel(), minlength=count + 1)[1:] * side**2
+    rows, columns = mask.shape
+    large = (areas >= 1.2 * low**2) & (areas <= 4.0 * high**2)
+    places = np.flatnonzero(large)
+    if len(places) > MAX_AREAS:
+        raise TooManySpots(_too_many(len(places), MAX_AREAS))
+    numbers = np.zeros(count + 1, np.int32)  # of the large ones alone, since the others may be millions
+    numbers[places + 1] = np.arange(1, len(places) + 1)
+    for i, (down, right) in zip(places, find_objects(numbers[labels]), strict=True):
+        height, width = side * (down.stop - down.start), side * (right.stop - right.start)
+        radius, share = np.sqrt(height * width) / 2.0, areas[i] / (height * width)
+        whole = down.start > 0 and right.start > 0 and down.stop < rows and right.stop < columns
+        slender = not 0.4 < width / height < 2.5
+        if not low * 0.8 <= radius <= high + 2.0 * side or (whole and (slender or share < 0.5)) or share < 0.3:
+            continue
+        column, row = ((part.start + part.stop) / 2.0 for part in (right, down))
+        around = float(contrast[int(row) // _CELLS_PER_BLOCK, int(column) // _CELLS_PER_BLOCK])
+        yield Blob(side * column - 0.5, side * row - 0.5, float(radius), dark, whole, around)
 
 
 @dataclass(frozen=True)
@@ -178,3 +310,131 @@ def _without_rings(markers: list[Marker]) -> list[Marker]:
         if all(math.hypot(marker.x - each.x, marker.y - each.y) > 0.5 * each.radius for each in kept):
             kept.append(marker)
     return kept
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Markers and properties of one image.
+
+    Attributes:
+        name: of the file
+        sha256: of its bytes
+        markers: both, always in the same order; none if the image was of no use
+        fault: why it was of no use, empty otherwise
+        warnings: what makes it doubtful
+        size: width and height [px]; 0, 0 if it could not be read
+        taken: time by the file, or None
+    """
+
+    name: str
+    sha256: str
+    markers: tuple[Marker, Marker] | None
+    fault: str = ""
+    warnings: tuple[str, ...] = ()
+    size: tuple[int, int] = (0, 0)
+    taken: datetime | None = None
+
+
+def look(
+    source: str | Path | Image,
+    *,
+    camera: Camera = PERFECT,
+    radius: tuple[float, float] | None = None,
+    dark: bool | None = None,
+) -> Frame:
+    """Find both markers in an image. `fault` gives the reason if it cannot be read or shows another number of markers.
+
+    Args:
+        source: a file, or a picture as `read_image` and `as_image` give it
+        camera, radius, dark: as `measure_angles` takes them
+
+    Raises:
+        ValueError: a number is out of its range
+
+    >>> look("missing.png").fault
+    'cannot be read: No such file or directory'
+    """
+    if isinstance(source, Image):
+        image = source
+    else:
+        path = Path(source)
+        try:
+            image = read_image(path)
+        except (OSError, ValueError) as error:
+            reason = error.strerror or str(error) if isinstance(error, OSError) else str(error)
+            return Frame(path.name, _digest(path), None, one_line(f"cannot be read: {reason}"))
+    size = (image.grey.shape[1], image.grey.shape[0])
+    try:
+        found, partial = found_and_partial(image.grey, radius, dark, camera)
+    except TooManySpots as error:
+        return Frame(image.name, image.sha256, None, str(error), (), size, image.taken)
+    pair, fault = _pair(found, partial)
+    if not found:
+        fault = _nothing(image.grey, partial)
+    blurred = [each for each in pair or () if each.blur > _MAX_BLUR_SHARE * each.radius]
+    if blurred:
+        pair, fault = (
+            None,
+            f"too blurred: an edge is spread by {blurred[0].blur:.1f} px, at a radius of {blurred[0].radius:.1f} px",
+        )
+    warnings = tuple(text for i, each in enumerate(pair or (), 1) for text in _warnings(i, each))
+    return Frame(image.name, image.sha256, pair, fault, warnings, size, image.taken)
+
+
+def _digest(path: Path) -> str:
+    try:
+        return hashlib.sha256(read_regular(path, MAX_PICTURE_BYTES)).hexdigest()
+    except (OSError, RefusedFile):
+        return ""
+
+
+def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Marker, Marker] | None, str]:
+    """The two markers; or why there are not two."""
+    groups = [[each for each in found if each.dark == dark] for dark in (True, False)]
+    groups.sort(key=len, reverse=True)
+    most, fewer = groups
+    if len(most) == 2 and all(_holds(each, most) for each in fewer):
+        return (most[0], most[1]), ""
+    if len(found) == 1:
+        alike = [
+            each
+            for each in partial
+            if abs(each.radius / found[0].radius - 1.0) < _MAX_RADIUS_DIFFERENCE and each.dark == found[0].dark
+        ]
+        rest = f"; of another, {_place(alike[0])}, only {alike[0].arc:.0%} of the edge is seen" if alike else ""
+        return None, f"one marker instead of two: {_place(found[0])}{rest}"
+    shown = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MAX_MARKERS_SHOWN])
+    more = f", and {len(found) - _MAX_MARKERS_SHOWN} more" if len(found) > _MAX_MARKERS_SHOWN else ""
+    return None, f"{len(found)} markers instead of two: {shown}{more}; select them by radius=(least, most) in px, or by dark"
+
+
+def _holds(disc: Marker, markers: Sequence[Marker]) -> bool:
+    """True if a disc contains all markers."""
+    return all(math.hypot(disc.x - each.x, disc.y - each.y) + each.radius < disc.radius for each in markers)
+
+
+def _nothing(grey: Grey, partial: Sequence[Marker]) -> str:
+    if partial:
+        return f"no marker: of one {_place(partial[0])} only {partial[0].arc:.0%} of the edge is seen"
+    low, high = (float(each) for each in np.percentile(grey[::2, ::2], (1.0, 99.0)))
+    if low >= 0.99:
+        return "no marker: over-exposed, nearly all pixels are at full scale"
+    if high - low < 0.01:
+        return f"no marker: the picture is even, {low:.1%} to {high:.1%} of full scale"
+    bright = float(np.mean(grey >= 1.0))
+    more = f"; over-exposed, {bright:.0%} of the pixels are at full scale" if bright > 0.2 else ""
+    return f"no marker: nothing round with a clear edge{more}"
+
+
+def _warnings(number: int, marker: Marker) -> list[str]:
+    warnings = []
+    if marker.arc < _MIN_ARC_SHARE:
+        warnings.append(f"marker {number}: {marker.arc:.0%} of the edge is seen; look for shadows, reflections or dirt there")
+    if marker.clipped > _MAX_CLIPPED_SHARE:
+        share = f"{marker.clipped:.0%} of the pixels on one side of its edge are black or at full scale"
+        warnings.append(f"marker {number}: {share}; its centre may be in error by more than its sigma")
+    return warnings
+
+
+def _place(marker: Marker) -> str:
+    return f"at x = {marker.x:.0f}, y = {marker.y:.0f} px with radius {marker.radius:.1f} px"

@@ -1,4 +1,4 @@
-"""Gears between two encoders: known ones are found, and what the encoders cannot show is refused."""
+"""Gears between two encoders: known ones are found, and what the encoders cannot show is refused; deviations by blocks."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic
+from numpy.typing import NDArray
+from strainwave.identification.candidates.elastic import ElasticCandidate, fit_elastic, sigma_by_blocks
 from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.fitting.fit import fit, solved_problem
 
 LAW = sw.kinematic_error.Fourier(amplitude=[1e-4], order=[2], phase=[0.7])
 TRUTH = sw.Drive(
@@ -27,6 +29,7 @@ TRUTH = sw.Drive(
 )
 LATE = 2e-4  # s
 NUMBERS = {"gear.stiffness.k": 9e3, "gear.hysteresis.breakaway[0]": 0.8, "load.inertia": 0.8, "output_angle_delay": LATE}
+FRICTION = sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4)
 
 
 @cache
@@ -72,3 +75,26 @@ def test_a_twist_that_noise_hides_is_not_told() -> None:
 def test_no_delay_between_encoders_is_longer_than_five_samples() -> None:
     fitted = found(1e-5, delay=0.03, seconds=4.0).fit  # 15 samples
     assert not any(each.path == "output_angle_delay" for each in fitted.estimates)
+
+
+def ratios(change: float) -> NDArray[np.float64]:
+    """Of both standard deviations, where viscous friction is larger by this share in the second half than in the first."""
+    random = np.random.default_rng(2)
+    speed = random.uniform(1.0, 50.0, 600) * random.choice([-1.0, 1.0], 600)
+    noise = 1e-4 * random.standard_normal(len(speed))
+    torque = FRICTION.steady(speed) + 3e-4 * np.linspace(-0.5, 0.5, len(speed)) * change * speed + noise
+    table = sw.Recording({"speed": speed, "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    found = fit(sw.Gear(friction_input=FRICTION), table, ["friction_input.coulomb", "friction_input.viscous"])
+    problem, x = solved_problem(found)
+    sigmas: NDArray[np.float64] = sigma_by_blocks(problem, x, found.estimates) / [each.sigma for each in found.estimates]
+    return sigmas
+
+
+def test_where_the_model_is_right_blocks_tell_what_the_fit_does() -> None:
+    found = ratios(0.0)
+    assert (found >= 1.0).all()
+    assert found == pytest.approx(1.0, abs=0.7)  # a deviation by twelve blocks is known to a fifth
+
+
+def test_where_a_number_changes_along_the_record_blocks_differ_by_more_than_noise_tells() -> None:
+    assert ratios(0.3)[1] > 1.5

@@ -9,8 +9,13 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.identification.candidates.presliding import breakaway_torque, fit_presliding
-from strainwave.identification.experiments.presliding import BreakawayPoint, PreslidingLoop, breakaways
+from strainwave.identification.candidates.presliding import (
+    BreakawayPoint,
+    PreslidingLoop,
+    breakaway_torque,
+    breakaways,
+    fit_presliding,
+)
 
 Array = NDArray[np.float64]
 

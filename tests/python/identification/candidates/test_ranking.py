@@ -11,8 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
 from strainwave.identification.candidates.torsion.candidate import TorsionCandidate, candidate, starts
-from strainwave.identification.candidates.torsion.dissipation import Elements
-from strainwave.identification.candidates.torsion.memories import BoucWen, FadingMemory
+from strainwave.identification.candidates.torsion.dissipation import BoucWen, Elements, FadingMemory
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.candidates.torsion.springs import LINEAR, THREE_SEGMENT
 from strainwave.identification.experiments.torsion_loop import TorsionLoop

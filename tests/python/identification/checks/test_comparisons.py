@@ -10,16 +10,15 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.checks.comparisons import (
-    MAX_CHANCE,
+    MAX_CHANCE_OF_START_SET,
     between_files,
     gravity_in_ratings,
     other_loads,
     with_start_set,
 )
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.check import Check
 from strainwave.identification.results.combined_parameter import combine
-from strainwave.identification.results.file_result import FileEstimate, FileResult
+from strainwave.identification.results.file_result import Check, FileEstimate, FileResult
 from strainwave.typeset import percent
 
 from tests.support.samples import sample
@@ -82,7 +81,7 @@ def test_the_share_that_fails_by_chance_is_the_one_stated() -> None:
     factors = np.exp(0.3 * random.standard_normal(count))
     (one,) = against(SMALL, of("loop.csv", {FIRST: known}, 1e-6))
     failed = float(np.mean((np.log(factors) / 0.3) ** 2 > one.limit))
-    assert failed == pytest.approx(MAX_CHANCE, abs=4.0 * np.sqrt(MAX_CHANCE / count))
+    assert failed == pytest.approx(MAX_CHANCE_OF_START_SET, abs=4.0 * np.sqrt(MAX_CHANCE_OF_START_SET / count))
 
 
 def test_friction_from_run_to_run_may_differ_by_more_than_its_standard_deviation_and_by_no_factor_of_two() -> None:

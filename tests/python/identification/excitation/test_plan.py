@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import given, settings, strategies as st
-from strainwave.identification.excitation.design import best, covariance_of, score, without_nuisances
+from strainwave.identification.excitation.candidates import best, covariance_of, score, without_nuisances
 
 COULOMB = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.02, breakaway=0.02, viscous=3e-4))
 STRIBECK = sw.Gear(friction_input=sw.friction.Stribeck(coulomb=0.02, breakaway=0.035, stribeck_speed=8.0, viscous=3e-4))

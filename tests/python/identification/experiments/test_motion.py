@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from scipy import signal
 from strainwave.identification.experiments.motion import PASS_BAND_SHARE, Motion, motion_of
+from strainwave.identification.experiments.motion_log import late
 
 STEP = 2e-3
 TIME = STEP * np.arange(5000)
@@ -35,21 +36,21 @@ def test_the_filter_is_that_of_butterworth_forward_and_backward(cutoff: float) -
 @settings(max_examples=30, deadline=None)
 @given(delay=st.floats(-0.05, 0.05), frequency=st.floats(0.5, 10.0))
 def test_a_delayed_sine_is_a_sine_and_changes_with_the_delay_as_it_does(delay: float, frequency: float) -> None:
-    motion, turning = moving(10, 50.0), 2.0 * np.pi * frequency
-    late, change = motion.late(np.stack([np.sin(turning * TIME), np.cos(turning * TIME)]), delay)
+    turning = 2.0 * np.pi * frequency
+    delayed, change = late(np.stack([np.sin(turning * TIME), np.cos(turning * TIME)]), delay, STEP)
     inside = slice(30, -30)
     phase = turning * (TIME - delay)
     error = (turning * STEP) ** 3  # of the cubic of Catmull and Rom, which is exact up to the square
-    assert late[0, inside] == pytest.approx(np.sin(phase)[inside], abs=error)
-    assert late[1, inside] == pytest.approx(np.cos(phase)[inside], abs=error)
+    assert delayed[0, inside] == pytest.approx(np.sin(phase)[inside], abs=error)
+    assert delayed[1, inside] == pytest.approx(np.cos(phase)[inside], abs=error)
     assert change[inside] == pytest.approx(-turning * np.cos(phase)[inside], abs=error / STEP)
 
 
 def test_a_delay_longer_than_the_record_leaves_its_ends() -> None:
     series = np.cos(TIME)[np.newaxis]
     for delay, end in ((1e9, 0), (-1e9, -1)):
-        late, change = moving(10, 50.0).late(series, delay)
-        assert late[0] == pytest.approx(np.full_like(TIME, series[0, end]), rel=1e-6)
+        delayed, change = late(series, delay, STEP)
+        assert delayed[0] == pytest.approx(np.full_like(TIME, series[0, end]), rel=1e-6)
         assert not np.abs(change).max() > 1e-6 / STEP
 
 

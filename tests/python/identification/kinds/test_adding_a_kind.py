@@ -13,7 +13,7 @@ import strainwave as sw
 from strainwave.identification import kinds
 from strainwave.identification.identify import identify
 from strainwave.identification.kinds import Listed
-from strainwave.identification.rank import rank, table_of
+from strainwave.identification.kinds.kind import rank, table_of
 from strainwave.identification.reading.recognise import recognise
 from strainwave.report.identify import identify_report
 

@@ -8,8 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.files.gear_set import GearSet
 from strainwave.identification.identify import Identified, identify
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.results.gear_so_far import ROTOR_SIGMA
 from strainwave.questions import QuestionError
 
 from tests.support.answers import options_of
@@ -49,6 +51,16 @@ def test_with_the_inertia_of_the_rotor_it_is_a_table_of_friction() -> None:
         assert estimate.value == pytest.approx(truth, rel=0.02)
     assert any("friction scales with them" in each for each in result.remarks)
     assert not result.failed
+
+
+def test_friction_is_as_uncertain_as_the_inertia_of_the_wave_generator() -> None:
+    start = sw.load("csg-20-100")
+    entry = GearSet.read("csg-20-100").sources["gear.input_inertia"]
+    sigma = entry.sigma(start.input_inertia) or ROTOR_SIGMA * start.input_inertia
+    (result,) = found(motor_inertia=ROTOR).files
+    (coulomb,) = (each for each in result.estimates if each.path == "gear.friction_input.coulomb")
+    assert coulomb.common == pytest.approx(coulomb.value * sigma / (ROTOR + start.input_inertia))
+    assert coulomb.sigma > coulomb.common > 0.0
 
 
 def test_a_load_turns_with_it() -> None:

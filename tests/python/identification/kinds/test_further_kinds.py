@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.identify import Identified, identify
-from strainwave.identification.rank import rank
+from strainwave.identification.kinds.kind import rank
 from strainwave.identification.reading.mapping import FileMapping, MappingFile
 from strainwave.identification.reading.recognise import recognise
 

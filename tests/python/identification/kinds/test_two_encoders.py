@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
-from strainwave.identification.kinds.two_encoders import orders_of, with_error
+from strainwave.identification.kinds.two_encoders import curves_of_orders, orders_of, with_error
 from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.orders.two_encoders import transmission_error
 
 SPEEDS = "10 to 60 1/min of the input"
 PATH = "gear.kinematic_error.amplitude[0]"
@@ -40,3 +41,21 @@ def test_amplitudes_at_one_speed_name_it_and_others_do_not() -> None:
         known = with_error(GearSoFar(GearSet.read("csg-20-100")), found, "te.csv")
         assert known.gear_set.sources[PATH].source == source
         assert "kinematic_error" in known.determined
+
+
+def test_orders_are_as_uncertain_as_amplitude_and_phase_make_them() -> None:
+    time = np.arange(0.0, 6.0, 0.004)
+    angle = 30.0 * np.sin(0.5 * time) + 5.0 * np.sin(1.3 * time)
+    noise = np.random.default_rng(0).normal(0.0, 1e-5, len(time))
+    output = -angle / 100 - 2e-4 * np.sin(2 * angle + 0.4) + noise
+    columns, units = {"time": time, "input_angle": angle, "output_angle": output}, {"time": "s"}
+    found = transmission_error(sw.Recording(columns, units | dict.fromkeys(list(columns)[1:], "rad")), ratio=-100)
+    curves = curves_of_orders(found)
+    off = curves["modelled"] - 2e-4 * np.sin(2.0 * found.curves["input_angle"] + 0.4)
+    (second,) = [each for each in found.orders if each.significant]
+    phase = 2.0 * found.curves["input_angle"] + second.phase
+    slopes = np.stack([np.sin(phase), second.amplitude * np.cos(phase)], axis=1)
+    sigma = np.linalg.norm(slopes * [second.amplitude_sigma, second.phase_sigma], axis=1)
+    np.testing.assert_allclose(curves["sigma"], sigma, rtol=1e-9)
+    assert np.sqrt(np.mean(off**2)) < 3.0 * np.sqrt(np.mean(sigma**2))
+    np.testing.assert_array_equal(curves["residual"], found.curves["residual"])

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, strategies as st
-from strainwave.identification.reading.channels import CHANNELS
 from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
+from strainwave.identification.reading.names import CHANNELS
 
 TEXT = """
 side = "output"

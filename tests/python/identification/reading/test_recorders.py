@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from strainwave.identification.checks.logs import unit_of_torque
 from strainwave.identification.identify import identify
 from strainwave.identification.joints import identify_joints
+from strainwave.identification.reading.joints import joints_of
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.recognise import Recognised, joints_of, recognise
+from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.several_files import consistent
 from strainwave.identification.reading.source import MeasurementFile, measurement_files, with_parts
 

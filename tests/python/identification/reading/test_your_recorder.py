@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from strainwave.files.tables import open_table
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.other_format import other_format
 from strainwave.identification.reading.recognise import Recognised, recognise
-from strainwave.identification.reading.source import measurement_files
+from strainwave.identification.reading.source import measurement_files, other_format
 
 TIME = np.arange(0.0, 6.0, 0.005)
 ANGLE = 0.9 * np.sin(1.7 * TIME) + 0.2 * np.sin(4.1 * TIME)

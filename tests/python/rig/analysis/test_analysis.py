@@ -9,8 +9,8 @@ import pytest
 import strainwave as sw
 from strainwave.rig import Loop, Value, analyse, referred, table, without_friction
 from strainwave.rig.analysis.catalogue_check import CatalogueCheck, published
+from strainwave.rig.analysis.cycle import cycle_to
 from strainwave.rig.analysis.result import Result
-from strainwave.rig.influence.cycle import cycle_to
 
 from tests.python.catalogue.torsion import Torsion
 from tests.python.rig.loops import loop_of_table

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.rig.influence.cycle import Factors, cycle_to
+from strainwave.rig.analysis.cycle import Factors, cycle_to
 from strainwave.rig.influence.series import Series, analyse_series, read_series, series_of
 from strainwave.rig.virtual.printed import printed_gear
 

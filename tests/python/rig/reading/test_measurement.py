@@ -16,13 +16,11 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.rig.bench.rig_file import load, write_rig
 from strainwave.rig.bench.setup import Masses, Rig, Value
-from strainwave.rig.bench.steps import Step
-from strainwave.rig.bench.steps_file import read_steps, write_steps
+from strainwave.rig.bench.steps import Step, read_steps, write_steps
 from strainwave.rig.loop import Loop
-from strainwave.rig.reading.measurement import loops, read_test
+from strainwave.rig.reading.measurement import couple, loops, read_test
 from strainwave.rig.reading.recorded import loop_of, read_loop, scatter
 from strainwave.rig.running.plan import plan
-from strainwave.rig.torque.couple import couple
 from strainwave.rig.virtual.loading import load_by_steps
 from strainwave.rig.virtual.render import Scene
 from strainwave.rig.virtual.test import simulate_test

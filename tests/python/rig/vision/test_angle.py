@@ -12,9 +12,9 @@ from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from PIL import Image as Pillow
 from strainwave.rig.bench.setup import Camera
-from strainwave.rig.vision.angle import Angles, Frame, camera_seen, follow, look, measure_angles, turn
+from strainwave.rig.vision.angle import Angles, camera_seen, follow, measure_angles, turn
 from strainwave.rig.vision.image import Image, as_image
-from strainwave.rig.vision.marker import Marker
+from strainwave.rig.vision.marker import Frame, Marker, look
 
 from tests.python.rig.vision.discs import picture, target
 

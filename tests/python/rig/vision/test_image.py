@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image as Pillow
-from strainwave.rig.vision.frame import look
 from strainwave.rig.vision.image import CAPTURE_OPTIONS, as_image, by_number, picture_files, read_image, video_images
+from strainwave.rig.vision.marker import look
 
 RAMP = np.arange(24 * 32, dtype=np.uint8).reshape(24, 32)
 

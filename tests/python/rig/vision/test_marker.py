@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from strainwave.rig.vision.frame import look
 from strainwave.rig.vision.image import as_image
-from strainwave.rig.vision.marker import Marker, find_markers
+from strainwave.rig.vision.marker import Marker, find_markers, look
 
 from tests.python.rig.vision.discs import DARK, GROUND, picture, target
 

@@ -1,4 +1,4 @@
-"""One kind of spring and its dissipation, fitted to a loop: the answer of a convex problem, refined.
+"""Springs and their dissipation fitted to a loop: answers of convex problems, refined; the best of them as `identify` takes it.
 
 For given knees and slip twists a loop is linear in stiffnesses, all of which are positive: a convex problem with one answer
 (non-negative least squares), which needs no initial values. It gives the count of Maxwell elements that the loop separates;
@@ -7,7 +7,7 @@ exact derivatives then refine all numbers of spring and hysteresis together.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -17,12 +17,23 @@ from numpy.typing import NDArray
 from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING_SHARE
 from strainwave.equality import ComparedByFields
-from strainwave.identification.candidates.torsion.dissipation import SLIPS, Dissipation, half_span, maxwell, pairs
-from strainwave.identification.candidates.torsion.library import Answer, solve
-from strainwave.identification.candidates.torsion.springs import SpringKind
+from strainwave.identification.candidates.torsion.dissipation import (
+    SLIPS,
+    Dissipation,
+    Dry,
+    Elements,
+    InputFriction,
+    Nothing,
+    half_span,
+    maxwell,
+    pairs,
+)
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT, Answer, SpringKind, solve
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.identification.fitting.unknowns import Estimate
 
+SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 Array = NDArray[np.float64]
 MAX_SLIP = 0.9  # of half the span: a loop does not separate an element that slips later from a spring
 MIN_SLIP_RATIO = 1.1  # of two slip twists; elements that are closer are one
@@ -33,6 +44,80 @@ DRIFTS = ("torque_drift", "twist_drift")
 MIN_DRIFT_SIGMA = 3.0  # standard deviations of a drift
 MAX_START_SAMPLES = 500  # for initial values of a law whose torques take long
 MIN_ERROR_SHARE = 1e-3  # of the span of the torque: a smaller decrease of the error does not justify another parameter
+
+
+# ---- Choice ----------------------------------------------------------------------------------------------------------
+
+
+def fit_loop(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_] | None = None, *, friction_measured: bool = False
+) -> list[TorsionCandidate]:
+    """Fit each kind of spring to a loop, with the dissipation that the loop determines.
+
+    That is Maxwell-slip hysteresis, in parallel with the spring. A single branch determines none: the hysteresis of the gear is
+    kept. A loop from the input contains the friction of the wave generator, too. If this was measured, it is taken out. If not,
+    the loop determines the sum of friction and hysteresis alone; one of them is fitted, friction rather than hysteresis, and
+    the other is kept. A drift of torque or twist is fitted if the loop shows one.
+
+    Args:
+        loop: measured torque over twist
+        gear: the gear to start from; fitted parts are replaced, the rest is kept
+        training: samples that take part, shape (n,); the rest validates
+        friction_measured: True if `gear.friction_input` was measured on this gear
+
+    Returns:
+        candidates, best first by the error on data held out; of those within 5 % of it, and a thousandth of the span of the
+        torque, the one with the fewest parameters
+
+    Raises:
+        ValueError: too few samples for any candidate
+    """
+    chosen = np.ones(len(loop.twist), bool) if training is None else training
+    kinds = [(spring, dissipation) for dissipation in asked(loop, gear, friction_measured) for spring in SPRINGS]
+    candidates = _fitted(loop, gear, chosen, kinds)
+    best = min(candidates, key=lambda c: c.error)
+    if drift := drifts(with_drift(best, gear)):
+        loop = replace(loop, **drift)
+        candidates = _fitted(loop, gear, chosen, kinds)
+        best = min(candidates, key=lambda c: c.error)
+    good = float(np.hypot(1.05 * best.error, MIN_ERROR_SHARE * np.ptp(loop.torque)))
+    candidates += simpler(best, good, gear)
+    return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
+
+
+def _fitted(
+    loop: TorsionLoop, gear: Gear, training: NDArray[np.bool_], kinds: Sequence[tuple[SpringKind, Dissipation]]
+) -> list[TorsionCandidate]:
+    """Return the candidates of springs and dissipations for which there are samples enough; raises if there are for none."""
+    candidates, refused = list[TorsionCandidate](), list[ValueError]()
+    for each in kinds:
+        try:
+            candidates.append(candidate(loop, gear, training, *each))
+        except ValueError as error:
+            refused.append(error)
+    if not candidates:
+        raise refused[0]
+    return candidates
+
+
+def simpler(best: TorsionCandidate, good: float, known: Gear) -> Iterator[TorsionCandidate]:
+    """Yield the best candidate with fewer and fewer Maxwell elements, as long as its error is at most `good`."""
+    fewer = best
+    while len(fewer.dissipation.elements(fewer.fit.gear)) > 1 and fewer.error <= good:
+        gear = merged(fewer.fit.gear)  # the two as one that slip at the most similar twists
+        fewer = finished(gear, fewer.loop, fewer.fit.training, fewer.spring, fewer.dissipation, known)
+        yield fewer
+
+
+def asked(loop: TorsionLoop, gear: Gear, friction_measured: bool) -> list[Dissipation]:
+    """Return the dissipations that are fitted to the loop: Maxwell elements, or those in their place."""
+    if loop.single_branch:
+        return [Nothing()]
+    friction_inside = bool(np.any(loop.friction(gear))) and isinstance(gear.friction_input, Dry)
+    return [Elements()] if friction_measured or not friction_inside else [InputFriction(), Elements()]
+
+
+# ---- One kind of spring and its dissipation --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,15 +182,19 @@ def starts(
     """
     steady = loop.without_drift()
     if dissipation.is_slow:
-        steady, training = _sparse(steady, training)
+        few = slice(None, None, -(-len(steady.twist) // MAX_START_SAMPLES))  # which suffice for initial values
+        moments = None if steady.moments is None else steady.moments[few]
+        steady = replace(steady, twist=steady.twist[few], torque=steady.torque[few], moments=moments, corners=())
+        training = training[few]
     middle = 0.0 if loop.single_branch else loop.centre
     half = float(np.abs(steady.twist - middle).max())
     torque = steady.torque - dissipation.known(steady, gear)
-    zeros = _zero_columns(steady)
+    level = float(np.abs(steady.torque).max())
+    either_way = [] if steady.single_branch else [level, -level]  # of a zero of the torque that is not known
+    zeros = np.full((len(steady.twist), len(either_way)), either_way)
     libraries = [spring.library(steady.twist - middle, half, gear), dissipation.library(steady, gear)]
     rows = [replace(library, torques=library.torques[training]) for library in libraries]
     answers = solve(torque[training], rows, zeros[training], most)
-    level = float(np.abs(steady.torque).max())
 
     def begun(answer: Answer) -> Start:
         torque_zero = level * float(answer.weights[-1][0] - answer.weights[-1][1]) if zeros.size else 0.0
@@ -151,21 +240,20 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
     """
     if found.loop.single_branch:
         return found
+
+    def is_shown(estimate: Estimate) -> bool:
+        return estimate.path not in DRIFTS or abs(estimate.value) > MIN_DRIFT_SIGMA * estimate.sigma
+
     begun = resumed(found)
     loops = [replace(begun, torque_drift=0.0), replace(begun, twist_drift=0.0)]
     tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.dissipation, known) for loop in loops]
-    shown = [each for each in tried if each.error < found.error and _drift_shown(each)]
+    shown = [each for each in tried if each.error < found.error and all(map(is_shown, each.fit.estimates))]
     return min([found, *shown], key=lambda each: each.error)
 
 
 def drifts(found: TorsionCandidate) -> dict[str, Any]:
     """Return the fitted drifts by name."""
     return {e.path: e.value for e in found.fit.estimates if e.path in DRIFTS}
-
-
-def _drift_shown(found: TorsionCandidate) -> bool:
-    sigma = {e.path: e.sigma for e in found.fit.estimates}
-    return all(abs(value) > MIN_DRIFT_SIGMA * sigma[name] for name, value in drifts(found).items())
 
 
 def resumed(found: TorsionCandidate) -> TorsionLoop:
@@ -179,16 +267,11 @@ def finished(
     begin: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation, known: Gear
 ) -> TorsionCandidate:
     """Return the candidate whose refinement begins with a gear."""
-    found = dissipation.finished(_refined(begin, loop, training, spring, dissipation), known)
-    held_out = found.rms(held_out=True)[0]
-    words = dissipation.words(found.gear)
+    refined = dissipation.finished(_refined(begin, loop, training, spring, dissipation), known)
+    held_out = refined.rms(held_out=True)[0]
+    words = dissipation.words(refined.gear)
     name = words if dissipation.whole_spring else f"{spring.words}{words}"
-    return TorsionCandidate(spring, dissipation, name, found, float(found.rms()[0] if np.isnan(held_out) else held_out))
-
-
-def with_fewer(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
-    """Return the candidate with the two Maxwell elements as one that slip at the most similar twists."""
-    return finished(merged(found.fit.gear), found.loop, found.fit.training, found.spring, found.dissipation, known)
+    return TorsionCandidate(spring, dissipation, name, refined, float(refined.rms()[0] if np.isnan(held_out) else held_out))
 
 
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation) -> Fit:
@@ -202,24 +285,27 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     stiff: set[int] = set()
     for last in [*(MAX_ROUNDS - 1) * [False], True]:
         free = spring.free(gear) + dissipation.free(gear, stiff)
-        found = _in_order(fit(gear, loop, free, training=training), spring)
-        fitted = dissipation.elements(found.gear)
+        refined = fit(gear, loop, free, training=training)
+        ordered = spring.in_order(refined.gear.stiffness)
+        if ordered is not refined.gear.stiffness:
+            refined = replace(refined, model=refined.gear.replace(stiffness=ordered))
+        fitted = dissipation.elements(refined.gear)
         if last:
             break
         slipping = [(k, f) for k, f in fitted if MIN_ERROR_SHARE * span < f < MAX_SLIP * half * k]
         if len(slipping) < len(fitted):
             stuck = sum(k for k, f in fitted if f >= MAX_SLIP * half * k)
-            stiffened = spring.stiffened(found.gear.stiffness, stuck)
+            stiffened = spring.stiffened(refined.gear.stiffness, stuck)
             gear, stiff = gear.replace(stiffness=stiffened, hysteresis=maxwell(slipping)), set()
         elif _alike(slipping):
-            gear, stiff = merged(found.gear), set()
+            gear, stiff = merged(refined.gear), set()
         elif stiffer := {i for i, (k, f) in enumerate(fitted) if f < 0.999 * least * k}:
             stiff |= stiffer
             slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
-            gear = found.gear.replace(hysteresis=maxwell(slower))
+            gear = refined.gear.replace(hysteresis=maxwell(slower))
         else:
             break
-    return found
+    return refined
 
 
 def merged(gear: Gear) -> Gear:
@@ -238,25 +324,3 @@ def _alike(elements: Sequence[tuple[float, float]]) -> bool:
     """True if two Maxwell elements slip at nearly the same twist."""
     slips = np.sort([f / k for k, f in elements])
     return bool(np.any(slips[1:] < MIN_SLIP_RATIO * slips[:-1]))
-
-
-def _in_order(found: Fit, spring: SpringKind) -> Fit:
-    """Return the same fit, the knees of its spring in order."""
-    ordered = spring.in_order(found.gear.stiffness)
-    return found if ordered is found.gear.stiffness else replace(found, model=found.gear.replace(stiffness=ordered))
-
-
-def _sparse(loop: TorsionLoop, training: NDArray[np.bool_]) -> tuple[TorsionLoop, NDArray[np.bool_]]:
-    """Return a loop of few samples, which suffice for initial values."""
-    step = -(-len(loop.twist) // MAX_START_SAMPLES)
-    few = slice(None, None, step)
-    moments = None if loop.moments is None else loop.moments[few]
-    return replace(loop, twist=loop.twist[few], torque=loop.torque[few], moments=moments, corners=()), training[few]
-
-
-def _zero_columns(loop: TorsionLoop) -> Array:
-    """Return the columns of a zero of the torque, either way; none if it is known."""
-    if loop.single_branch:
-        return np.empty((len(loop.twist), 0))
-    level = np.full(len(loop.twist), np.abs(loop.torque).max())
-    return np.column_stack((level, -level))

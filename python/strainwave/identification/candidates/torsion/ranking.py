@@ -15,25 +15,44 @@ from strainwave._core import Gear, PassivityWarning
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.torsion.candidate import (
     TorsionCandidate,
+    asked,
     candidate,
     drifts,
     resumed,
+    simpler,
     with_drift,
 )
-from strainwave.identification.candidates.torsion.dissipation import Dissipation
-from strainwave.identification.candidates.torsion.folds import FOLD_COUNT, LOOP_BLOCKS, block_of, held_out_blocks
-from strainwave.identification.candidates.torsion.memories import WHOLE, WITH_A_SPRING
-from strainwave.identification.candidates.torsion.selection import asked, simpler
+from strainwave.identification.candidates.torsion.dissipation import WHOLE, WITH_A_SPRING, Dissipation
 from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.statistics.residuals import correlation_length
 
+LOOP_BLOCKS = 20  # of the samples of a loop
+FOLD_COUNT = 4  # each of every fourth block
 Array = NDArray[np.float64]
 MIN_EXCESS = 0.01  # of the error of the best: a smaller difference is none
 MAX_MINIMA = 2  # of one kind that are fitted: there are many kinds
 MAX_RESIDUAL_FACTOR = 1.25  # over the residuals of the best: models that leave more are judged by one fold
 TIMED_RUNS = 5  # of a law, of which the shortest counts
+
+
+def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
+    """Return True for samples that train: all but every fourth of twenty blocks, which are held out to validate.
+
+    Whole blocks, because neighbours on a loop resemble each other too much to test one by the other. The four folds hold out
+    each block once.
+
+    >>> [int((~held_out_blocks(40, fold)).sum()) for fold in range(4)]
+    [10, 10, 10, 10]
+    """
+    training: NDArray[np.bool_] = block_of(n) % FOLD_COUNT != fold
+    return training
+
+
+def block_of(n: int) -> NDArray[np.intp]:
+    """Return the block of each sample, shape (n,)."""
+    return np.arange(n) * LOOP_BLOCKS // n
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +127,8 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
         tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
-    found = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
-    return _ordered([each for each in found if each is not None])
+    judged = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
+    return _ordered([each for each in judged if each is not None])
 
 
 class _TriedCandidates:
@@ -127,10 +146,10 @@ class _TriedCandidates:
                     continue
                 try:
                     with _trying():
-                        found = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
+                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
-                self._found[spring, dissipation] = found
+                self._found[spring, dissipation] = fitted
 
     def drift(self) -> None:
         """Fit all again with a drift, if the best shows one."""
@@ -204,8 +223,8 @@ def _judged(found: TorsionCandidate, folds: int) -> _Judged | None:
 
 def _ordered(judged: Sequence[_Judged]) -> tuple[RankedCandidate, ...]:
     best = min((each for each in judged if np.isfinite(each.blocks).all()), key=lambda each: each.blocks.mean())
-    found = [_measured(each, best) for each in judged]
-    return tuple(sorted(found, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
+    measured = [_measured(each, best) for each in judged]
+    return tuple(sorted(measured, key=lambda c: (not c.good, (c.parameters, c.error) if c.good else c.worse)))
 
 
 def _measured(judged: _Judged, best: _Judged) -> RankedCandidate:

@@ -1,20 +1,24 @@
-"""Kinds of spring of a loop, each with its initial curves: linear in positive weights, for each of some knees."""
+"""Kinds of spring of a loop, each with its initial curves: linear in positive weights, for each of some knees.
+
+A library is a part of a gear whose torque is linear in positive weights: the best of many is found by convex problems.
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import chain, combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import stiffness
 from strainwave._core import Gear
-from strainwave.identification.candidates.torsion.library import Choice, Library
+from strainwave.equality import ComparedByFields
 
 Array = NDArray[np.float64]
+MAX_TURNS = 4  # of choosing spring and hysteresis in turn; no loop tried took more than three
 Law = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
 Spring = Law | stiffness.Backlash
 KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
@@ -25,11 +29,147 @@ MIN_STIFFNESS_SHARE = 1e-6  # of the secant stiffness, in place of no spring
 MIN_STIFFNESS = 1e-9  # N.m/rad
 
 
+# ---- Convex problem --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A part with all numbers chosen but its weights.
+
+    Attributes:
+        columns: of the library's torques, those of its weights
+        put: returns the gear with this part, from its weights
+        group: choices of one group lead to the same minimum; answers are of several groups
+    """
+
+    columns: tuple[int, ...]
+    put: Callable[[Gear, Array], Gear]
+    group: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Library(ComparedByFields):
+    """Torques that one kind of part can add.
+
+    Attributes:
+        torques: of unit weights along the loop [N.m], shape (n, m)
+        choices: of which a gear has one
+    """
+
+    torques: Array
+    choices: tuple[Choice, ...]
+
+    @classmethod
+    def of(cls, torques: Sequence[Array], choices: Sequence[Choice]) -> Library:
+        return cls(np.column_stack(torques), tuple(choices))
+
+
+@dataclass(frozen=True, eq=False)
+class Answer(ComparedByFields):
+    """The best choice of each library.
+
+    Attributes:
+        choices: one of each library
+        weights: of each, and of the columns that always take part
+        error: root of the sum of the squared residuals [N.m]
+    """
+
+    choices: tuple[Choice, ...]
+    weights: tuple[Array, ...]
+    error: float
+
+    def put(self, gear: Gear) -> Gear:
+        """Return the gear with all parts."""
+        for choice, weights in zip(self.choices, self.weights, strict=False):
+            gear = choice.put(gear, weights)
+        return gear
+
+
+def solve(torque: Array, libraries: Sequence[Library], always: Array, most: int = 1) -> list[Answer]:
+    """Return the choices of each library that explain a torque best, with positive weights.
+
+    For given choices the weights are a convex problem, non-negative least squares (LawsonHanson1974). The triangle of one QR
+    decomposition of all columns replaces the columns. The libraries are tried in turn until nothing improves.
+
+    Args:
+        torque: to explain [N.m], shape (n,)
+        libraries: kinds of parts; one choice of each is taken
+        always: columns that take part in any choice, shape (n, k)
+        most: largest count of answers
+
+    Returns:
+        answers, best first; their choices of the first library that has several groups are of different ones
+
+    Raises:
+        ValueError: no choice has an answer
+
+    >>> x = np.linspace(-1.0, 1.0, 9)
+    >>> powers = Library.of([x, x**3, x**5], [Choice((0, 1), lambda gear, w: gear), Choice((0, 2), lambda gear, w: gear)])
+    >>> found = solve(2.0 * x + 3.0 * x**5, [powers], np.empty((9, 0)))[0]
+    >>> found.choices[0].columns, found.weights[0].round(12)
+    ((0, 2), array([2., 3.]))
+    """
+    matrix = np.column_stack([*(library.torques for library in libraries), always])
+    size = np.linalg.norm(matrix, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    triangle = np.asarray(np.linalg.qr(np.column_stack((matrix / size, torque)), mode="r"), float)
+    firsts = np.cumsum([0, *(library.torques.shape[1] for library in libraries)])
+    constant = [*range(firsts[-1], matrix.shape[1])]
+
+    answers: dict[tuple[int, ...], Answer] = {}
+
+    def tries(numbers: tuple[int, ...]) -> None:
+        choices = [library.choices[number] for library, number in zip(libraries, numbers, strict=True)]
+        places = [
+            [first + column for column in choice.columns] for first, choice in zip(firsts[:-1].tolist(), choices, strict=True)
+        ]
+        order = [*chain(*places), *constant]
+        solution = _positive(triangle[:, order], triangle[:, -1])
+        if solution is not None:
+            ends = np.cumsum([len(each) for each in places])
+            answers[numbers] = Answer(tuple(choices), tuple(np.split(solution[0] / size[order], ends)), solution[1])
+
+    chosen = (0,) * len(libraries)
+    for _ in range(MAX_TURNS):
+        before = len(answers)
+        for place, library in enumerate(libraries):
+            for number in range(len(library.choices)):
+                numbers = (*chosen[:place], number, *chosen[place + 1 :])
+                if numbers not in answers:
+                    tries(numbers)
+            chosen = min(answers, key=lambda each: answers[each].error, default=chosen)
+        if len(answers) == before:
+            break
+    if not answers:
+        raise ValueError("no spring and hysteresis fits this loop; see whether the units of twist and torque are right")
+    parted = next((place for place, each in enumerate(libraries) if len({choice.group for choice in each.choices}) > 1), 0)
+    of_groups: dict[float, Answer] = {}
+    for answer in sorted(answers.values(), key=lambda answer: answer.error):
+        of_groups.setdefault(answer.choices[parted].group, answer)
+    return [*of_groups.values()][:most]
+
+
+def _positive(matrix: Array, torque: Array) -> tuple[Array, float] | None:
+    """Return non-negative weights and their error; None if the active set cycles, as other choices remain."""
+    from scipy.optimize import nnls
+
+    try:
+        weights, error = nnls(matrix, torque)
+    except RuntimeError:
+        return None
+    return weights, float(error)
+
+
+# ---- Springs ---------------------------------------------------------------------------------------------------------
+
+
 class SpringKind(ABC):
     """A kind of spring."""
 
     words: str
     minima = 1  # count of initial curves that are fitted
+    in_parallel = ""  # number to which a linear spring in parallel adds its stiffness, if the sum is of the same kind
+    knows_zero = True  # its curve determines where the twist is zero
 
     @abstractmethod
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
@@ -41,35 +181,26 @@ class SpringKind(ABC):
 
     def stiffened(self, spring: Spring, k: float) -> Spring:
         """Return the spring in parallel with a linear one of stiffness k, if that is of the same kind; else the spring."""
-        return spring
+        name = self.in_parallel
+        return spring.replace(**{name: getattr(spring, name) + k}) if name else spring
 
     def in_order(self, spring: Spring) -> Spring:
         """Return the same curve, its knees in order."""
         return spring
 
-    @property
-    def knows_zero(self) -> bool:
-        """True if its curve determines where the twist is zero."""
-        return True
-
 
 class Linear(SpringKind):
     words = "linear spring"
+    in_parallel = "k"
+    knows_zero = False
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         return Library.of([twist], [Choice((0,), lambda g, w: g.replace(stiffness=stiffness.Linear(k=_soft(w))))])
 
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Linear)
-        return spring.replace(k=spring.k + k)
-
-    @property
-    def knows_zero(self) -> bool:
-        return False
-
 
 class Cubic(SpringKind):
     words = "cubic spring"
+    in_parallel = "a1"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def put(g: Gear, w: Array) -> Gear:
@@ -77,13 +208,10 @@ class Cubic(SpringKind):
 
         return Library.of([twist, half * (twist / half) ** 3], [Choice((0, 1), put)])
 
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Cubic)
-        return spring.replace(a1=spring.a1 + k)
-
 
 class Piecewise(SpringKind):
     words = "piecewise spring"
+    in_parallel = "k1"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         def choice(place: int, knee: float) -> Choice:
@@ -94,10 +222,6 @@ class Piecewise(SpringKind):
 
         knees = (half * KNEES).tolist()
         return Library.of([twist, *_beyond(twist, knees)], [choice(place, knee) for place, knee in enumerate(knees)])
-
-    def stiffened(self, spring: Spring, k: float) -> Spring:
-        assert isinstance(spring, stiffness.Piecewise)
-        return spring.replace(k1=spring.k1 + k)
 
 
 class ThreeSegment(SpringKind):

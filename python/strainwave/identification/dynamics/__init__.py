@@ -1,1 +1,0 @@
-"""Logs of moving drives: linear regression, then simulation."""

@@ -1,1 +1,0 @@
-"""From masses on pans to torque on the shaft, and how well it is known."""
