@@ -6,14 +6,14 @@ const { gunzipSync } = require("node:zlib");
 const { runInThisContext } = require("node:vm");
 
 const [scripts, page] = process.argv.slice(2);
-runInThisContext(`${["model", "core", "curves"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
+runInThisContext(`${["model", "core", "curves", "fit"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
 const bytesOf = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64");
 
 const TASKS = {
   /** Laws, whole numbers, numbers and paths of drives, and texts of their gears. */
   flatten: ({ schema, drives }) => drives.map((given) => {
     const drive = completed(schema, "Drive", given), parts = flattened(schema, "Drive", drive);
-    return { ...parts, numbers: bytesOf(parts.numbers), values: drive, python: pythonOf(schema, "Drive", drive), toml: gearToml(schema, "made", drive, ["motor", "control", "load", "sensors", "thermal", "meter"], () => "a test") };
+    return { ...parts, fields: undefined, numbers: bytesOf(parts.numbers), values: drive, python: pythonOf(schema, "Drive", drive), toml: gearToml(schema, "made", drive, ["motor", "control", "load", "sensors", "thermal", "meter"], () => "a test") };
   }),
   refuse: ({ schema, given }) => given.map((each) => { try { completed(schema, "Drive", each); return ""; } catch (error) { return error.message; } }),
   link: async ({ data, texts }) => [await fromFragment(await toFragment(data)), ...(await Promise.all(texts.map((text) => fromFragment(text).catch((error) => String(error.message)))))],
@@ -30,6 +30,13 @@ const TASKS = {
     };
     return Object.fromEntries(Object.entries(verbs).map(([name, verb]) => { const rows = verb(); return [name, rows && rows.map(bytesOf)]; }));
   }),
+  /** Numbers and RMS of fits of a loop, from each start. */
+  fit: ({ schema, drives, x, y, parts }, core) => drives.map((given) => {
+    const { gear } = setsOf(schema, completed(schema, "Drive", given));
+    const places = gear.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) ? [i] : []));
+    const begin = performance.now(), found = fitted((numbers, free) => core.slopes("loop_slopes", { ...gear, numbers }, x, free), gear.numbers, gear.fields, places, y);
+    return { rms: found.rms, iterations: found.iterations, numbers: places.map((place) => found.numbers[place]), seconds: 1e-3 * (performance.now() - begin) };
+  }),
   /** Codes of verbs with spoilt sets and points; any trap ends this process. */
   spoil: async ({ schema, drives, spoilt }, core) => {
     const codes = { number: [], points: [], law: [], shape: [], counts: [] };
@@ -38,7 +45,8 @@ const TASKS = {
       core.doubles("points", 4 * n).set([...points, ...points, ...points, ...points.map(() => ROOM_TEMPERATURE)]);
       return ["loop", "twist", "error", "spring"].map((verb) => core.call(verb, ...counts, n)).concat(core.call("friction", ...counts, n, 0));
     };
-    const points = [0, 1e-4, -1e-4];
+    const points = [0, 1e-4, -1e-4], keep = [1, 1, 1], instants = [0, 1e-4, 2e-4, 3e-4];
+    const inputs = [].concat(...Array.from({ length: 9 }, () => [0.1, 0, 0, 0, ROOM_TEMPERATURE, 0]));
     for (const given of drives) {
       const { gear, drive } = setsOf(schema, completed(schema, "Drive", given));
       for (const value of spoilt) {
@@ -46,7 +54,10 @@ const TASKS = {
           for (let i = 0; i < set.numbers.length; i++) {
             const numbers = set.numbers.with?.(i, value) ?? Object.assign([...set.numbers], { [i]: value });
             if (set === gear) codes.number.push([value, ...call({ ...set, numbers }, points)]);
-            else core.call("rates", ...core.put({ ...set, numbers }), ROOM_TEMPERATURE);
+            else {
+              core.call("rates", ...core.put({ ...set, numbers }), ROOM_TEMPERATURE);
+              try { core.run({ ...set, numbers }, instants, inputs, keep, [3]); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+            }
           }
         codes.points.push([value, ...call(gear, [0, value, 0])]);
       }

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import warnings
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 import strainwave as sw
 from hypothesis import Phase, given, settings
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
 from strainwave import _core
 from strainwave.workbench.schema import schema, values_of
 
@@ -42,7 +45,7 @@ def drives() -> list[sw.Drive]:
     return random_drives(DRIVES)
 
 
-def inputs() -> np.ndarray[Any, np.dtype[np.float64]]:
+def inputs() -> NDArray[np.float64]:
     """Inputs of a sine at start, middle and end of each step, shape (steps, 3, 6)."""
     given = np.zeros((len(INSTANTS) - 1, 3, 6))
     time = INSTANTS[:-1, None] + np.diff(INSTANTS)[:, None] * np.array([0.0, 0.5, 1.0])
@@ -51,7 +54,7 @@ def inputs() -> np.ndarray[Any, np.dtype[np.float64]]:
     return given
 
 
-def native_run(drive: sw.Drive) -> np.ndarray[Any, np.dtype[np.float64]]:
+def native_run(drive: sw.Drive) -> NDArray[np.float64]:
     laid_out = inputs()
     state = _core.begin(drive, drive.rest().numbers, laid_out[0, 0])
     out = np.empty((len(RECORDED), len(INSTANTS)))
@@ -111,3 +114,33 @@ def test_no_set_of_numbers_ends_in_a_trap(drives: list[sw.Drive]) -> None:
     assert {code for *_, code in codes["number"]} >= {done, refused}
     for kind in ("law", "shape", "counts"):
         assert set(codes[kind]) == {refused}, kind
+
+
+def test_a_fit_of_a_loop_ends_where_least_squares_of_scipy_ends() -> None:
+    gear = sw.load("hfuc-25-100")
+    turns = np.array([0.0, 1.4e-3, -1.4e-3, 1.4e-3, -0.7e-3, 0.7e-3])
+    twist = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairwise(turns)])
+    measured = gear.trace(twist) + 0.05 * np.random.default_rng(1).normal(size=len(twist))
+    start = gear.replace({"stiffness.k1": 3e4, "stiffness.k2": 4e4, "hysteresis.stiffness": [2e4, 7e3, 5e3]})
+    names = [path for path, *_ in _core.parameters(start)]
+    places = [i for i, name in enumerate(names) if name.startswith(("stiffness.", "hysteresis."))]
+    (found,) = in_node(
+        "fit",
+        core=True,
+        schema=schema(),
+        drives=[values_of(sw.Drive(gear=start))],
+        x=twist.tolist(),
+        y=measured.tolist(),
+        parts=["stiffness", "hysteresis"],
+    )
+    numbers = np.array([value for _, value, *_ in _core.parameters(start)])
+    beginning = numbers[places].copy()
+
+    def residual(logs: NDArray[np.float64]) -> NDArray[np.float64]:
+        numbers[places] = beginning * np.exp(logs)
+        return _core.differentiate_loop(_core.with_numbers(start, numbers), twist, [])[0] - measured
+
+    expected = least_squares(residual, np.zeros(len(places)), method="lm")
+    assert found["rms"] == pytest.approx(float(np.sqrt(np.mean(expected.fun**2))), rel=1e-4)
+    assert found["rms"] < 0.055
+    assert found["numbers"][:2] == pytest.approx(beginning[:2] * np.exp(expected.x[:2]), rel=1e-2)

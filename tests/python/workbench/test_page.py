@@ -160,6 +160,12 @@ def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
     tab.locator("#text-content").fill("\n".join(lines))
     tab.locator("#text-use").click()
     assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
+    field = tab.locator("#field-gear\\.friction_input\\.viscous")
+    field.fill("0.01")
+    field.press("Enter")
+    assert "RMS residual 0.01 N·m" not in readings(tab)["friction"]
+    tab.get_by_role("button", name="Fit").click()
+    assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
 
 
 @needs_page

@@ -58,9 +58,9 @@ function problemOf(field, value) {
   return "";
 }
 
-/** The laws, whole numbers and numbers of a model, in the order of the compiled core, and the path of each number. */
+/** The laws, whole numbers and numbers of a model, in the order of the compiled core, with path and field of each number. */
 function flattened(schema, id, values) {
-  const parts = { laws: [], shape: [], numbers: [], paths: [] };
+  const parts = { laws: [], shape: [], numbers: [], paths: [], fields: [] };
   flatten(schema, id, values, "", parts);
   return parts;
 }
@@ -76,10 +76,18 @@ function flatten(schema, id, values, before, parts) {
     else if (field.kind === "whole") parts.shape.push(value);
     else if (field.kind === "sequence") {
       parts.shape.push(value.length);
-      value.forEach((each, i) => { parts.numbers.push(each); parts.paths.push(`${path}[${i}]`); });
-    } else { parts.numbers.push(value); parts.paths.push(path); }
+      value.forEach((each, i) => addNumber(parts, each, `${path}[${i}]`, field));
+    } else addNumber(parts, value, path, field);
   }
 }
+function addNumber(parts, value, path, field) {
+  parts.numbers.push(value);
+  parts.paths.push(path);
+  parts.fields.push(field);
+}
+
+/** The keys of a path such as hysteresis.stiffness[0]. */
+const keysOf = (path) => path.replaceAll("]", "").split(/[.[]/).map((key) => (/^\d+$/.test(key) ? Number(key) : key));
 
 /** A copy of nested values with one of them changed. */
 function replaced(values, path, value) {

@@ -124,7 +124,7 @@ class Workbench {
       if (measured) curves.unshift({ x: measured.x.map((value) => value / card.axes()[0].factor), y: measured.y.map((value) => value / card.axes()[1].factor), colour: "--data", mark: "point" });
       card.plot.show(card.axes().map(({ label }) => label), curves);
       const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? ` ${this.other.name}: ` : "", ...numbers.flatMap(([label, text]) => [`${label} `, element("b", {}, text), "  "])));
-      if (measured) read.push(element("span", {}, "measured: ", element("b", {}, card.residual(measured))));
+      if (measured) read.push(element("span", {}, "measured: ", element("b", {}, card.residual(measured)), " "), this.button("Fit", () => this.fit(card)));
       card.numbers.replaceChildren(...read);
       card.element.querySelector(".canvas").setAttribute("aria-label", `${card.title}: ${card.numbers.textContent}`);
       return "";
@@ -155,8 +155,8 @@ class Workbench {
         const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
         return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
           numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`]] };
-      }, { takes: true, controls: () => this.travelControls(), residual: (measured) => {
-        const { rms, count } = rmsOf(this.core.loop(this.sets.gear, measured.x), measured.y);
+      }, { takes: true, fits: ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
+        const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
       card("stiffness", "Stiffness over torque", () => [axis("torque", this.unit("torque")), axis("stiffness", perAngle())], (sets, which, axes) => {
@@ -172,7 +172,7 @@ class Workbench {
       card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))}`, text(at, this.unit("torque"))]] };
-      }, { takes: true, controls: () => this.numberControls("friction", [["maxSpeed", "up to", "speed"], ["load", "load", "torque"], ["temperature", "temperature [K]", ""]]), residual: (measured) => {
+      }, { takes: true, fits: ["friction_input"], controls: () => this.numberControls("friction", [["maxSpeed", "up to", "speed"], ["load", "load", "torque"], ["temperature", "temperature [K]", ""]]), residual: (measured) => {
         const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
@@ -266,7 +266,7 @@ class Workbench {
     let now = NaN;
     try { now = measure(this.sets); } catch { /* said where it is drawn */ }
     gear.paths.forEach((path, i) => {
-      const row = this.form.rows.get(`gear.${path.replace("[", ".").replace("]", "")}`);
+      const row = this.form.rows.get(["gear", ...keysOf(path)].join("."));
       if (!row) return;
       let change = NaN;
       if (gear.numbers[i] !== 0 && now !== 0) {
@@ -293,6 +293,20 @@ class Workbench {
       }
       this.draw();
     } catch (error) { this.say(`measured data: ${error.message}`, true); }
+  }
+  /** Fits the numbers of the parts that a plot shows to its measured data. */
+  fit(card) {
+    const { x, y } = this.measured[card.key], { gear } = this.sets, begin = performance.now();
+    const places = gear.paths.flatMap((path, i) => (card.fits.includes(path.split(".")[0]) && ["number", "sequence"].includes(gear.fields[i].kind) ? [i] : []));
+    const filled = (value) => new Float64Array(x.length).fill(value), { angle, load, temperature } = this.view.friction;
+    const [verb, points] = card.key === "loop" ? ["loop_slopes", x] : ["friction", [x, filled(angle), filled(load), filled(temperature)]];
+    try {
+      const found = fitted((numbers, free) => this.core.slopes(verb, { ...gear, numbers }, points, free), gear.numbers, gear.fields, places, y);
+      let { drive } = this.state;
+      places.forEach((place) => { drive = replaced(drive, ["gear", ...keysOf(gear.paths[place])], found.numbers[place]); });
+      this.change({ ...this.state, drive }, true, true);
+      this.say(`${found.free} numbers fitted in ${found.iterations} iterations and ${Math.round(performance.now() - begin)} ms; strainwave identify gives their standard deviations`);
+    } catch (error) { this.say(`the fit failed: ${error.message}`, true); }
   }
   // ---- Texts and files -----------------------------------------------------------------------------------------------
   ask(title, content, use, hint = "") {
