@@ -12,7 +12,7 @@ def workbench(
     gear: Annotated[str | None, typer.Argument(help="A gear or drive: a set by name, or a file.")] = None,
     out: Annotated[Path, typer.Option("--out", "-o", help="Page to write.")] = Path("out/workbench.html"),
 ) -> None:
-    """Write a page that draws a gear, and redraws it as you change its numbers.
+    """Write a page that redraws a gear as you change its numbers.
 
     The page is one file, which any browser opens without a network. It computes with the same code as the package.
 
