@@ -123,8 +123,8 @@ class Workbench {
       const curves = pieces.flatMap(({ curves }) => curves).reverse();
       if (measured) curves.unshift({ x: measured.x.map((value) => value / card.axes()[0].factor), y: measured.y.map((value) => value / card.axes()[1].factor), colour: "--data", mark: "point" });
       card.plot.show(card.axes().map(({ label }) => label), curves);
-      const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? ` ${this.other.name}: ` : "", ...numbers.flatMap(([label, text]) => [`${label} `, element("b", {}, text), "  "])));
-      if (measured) read.push(element("span", {}, "measured: ", element("b", {}, card.residual(measured)), " "), this.button("Fit", () => this.fit(card)));
+      const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? `${this.other.name}: ` : "", ...numbers.flatMap(([label, text], k) => [`${k ? ", " : ""}${label} `, element("b", {}, text)])));
+      if (measured) read.push(element("span", { className: "measured" }, "measured: ", element("b", {}, card.residual(measured)), " "), this.button("Fit", () => this.fit(card)));
       card.numbers.replaceChildren(...read);
       card.element.querySelector(".canvas").setAttribute("aria-label", `${card.title}: ${card.numbers.textContent}`);
       return "";
