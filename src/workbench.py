@@ -112,8 +112,9 @@ def uplot(folder: Path) -> tuple[str, str]:
         npm = (node / "node", Path(NODE) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js")
         subprocess.run([*npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], cwd=modules, check=True)
         stamp.write_bytes(lock)
-    made = modules / "node_modules" / "uplot" / "dist"
-    return (made / "uPlot.iife.min.js").read_text("utf-8"), (made / "uPlot.min.css").read_text("utf-8")
+    package = modules / "node_modules" / "uplot"
+    script, style = ((package / "dist" / name).read_text("utf-8") for name in ("uPlot.iife.min.js", "uPlot.min.css"))
+    return f"/*\n{(package / 'LICENSE').read_text('utf-8')}*/\n{script}", style
 
 
 if __name__ == "__main__":

@@ -130,7 +130,8 @@ class Form {
   }
   limits(field, unit, factor) {
     const end = (value, none) => (value === undefined ? none : shortText(value / factor));
-    return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${field.open ? "(" : "["}${end(field.min, "−∞")}, ${end(field.max, "∞")}]`;
+const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
+    return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${low}${end(field.min, "−∞")}, ${end(field.max, "∞")}${high}`;
   }
   shown({ path, factor }) { return String(Number((valueAt(this.get(), path) / factor).toPrecision(7))); }
   refresh(row) { row.input.value = this.shown(row); }
