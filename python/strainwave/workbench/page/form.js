@@ -57,8 +57,8 @@ class Form {
       };
       made.append(element("div", { className: "law" }, menu));
     }
-    const help = element("details", { className: "help" }, element("summary", {}, model.doc.split("\n")[0] || field.doc),
-      element("pre", {}, `${model.doc.split("\n").slice(1).join("\n").trim()}\n\nSource: ${model.source}\nPython: sw.${id}`));
+    const help = element("details", { className: "help" }, element("summary", {}, model.doc || field.doc),
+      element("div", { innerHTML: model.help ?? "" }), element("p", {}, `Source: ${model.source}`), element("p", {}, "Python: ", element("code", {}, `sw.${id}`)));
     made.append(help);
     made.append(...model.fields.flatMap((inner) => (inner.kind === "part" ? [this.part(inner, value[inner.name], [...path, inner.name])]
       : this.member(inner, value[inner.name], [...path, inner.name], model.fields, value))));
