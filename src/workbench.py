@@ -88,7 +88,8 @@ def paragraph(text: str) -> str:
     '<p>with <code>law</code> &lt; 1</p>'
     """
     if text.startswith(".. math::"):
-        return f'<div class="equation" tabindex="0">{convert(" ".join(text.removeprefix(".. math::").split()), display="block")}</div>'
+        equation = convert(" ".join(text.removeprefix(".. math::").split()), display="block")
+        return f'<div class="equation" tabindex="0">{equation}</div>'
     marked = re.sub("``(.*?)``", r"<code>\1</code>", escape(text, quote=False))
     return f"<p>{marked}</p>"
 

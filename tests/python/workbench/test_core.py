@@ -1,4 +1,4 @@
-"""The core of the workbench, in WebAssembly: the bits of the compiled package, and no trap on any input."""
+"""The core of the workbench, in WebAssembly: the bits of the package, and no trap on any input."""
 
 from __future__ import annotations
 
@@ -20,7 +20,12 @@ from tests.support import strategies
 
 pytestmark = [needs_page, needs_node, pytest.mark.slow("native")]
 
-DRIVES = 200
+DRIVES = 400
+OF_ARCTAN = {
+    "Misalignment",
+    "MultiCompliance",
+}  # arctan is the C library's, whose last bit is not that of every other C library
+ROUNDING_SHARE = 1e-11  # of the largest value of a row: rounding of a law with an arctan
 RECORDED = [1, 2, 3, 4, 5, 6, 8, 9]  # input and output motion, twist, error, torque, friction
 TWIST = np.concatenate([np.linspace(0.0, 8e-4, 30), np.linspace(7e-4, -9e-4, 40), np.linspace(-8e-4, 5e-4, 30)])
 SPEED = np.linspace(-80.0, 80.0, 41)
@@ -95,14 +100,21 @@ def test_the_bits_are_those_of_the_package(drives: list[sw.Drive]) -> None:
     for drive, in_page in zip(drives, computed, strict=True):
         with warnings.catch_warnings(action="ignore"):
             expected = native(drive)
+        has_arctan = bool(strategies.models_of(drive) & OF_ARCTAN)
         for name, rows in expected.items():
             if rows is None:
                 continue
             assert in_page[name] is not None, (name, drive)
-            for row, bits in zip(rows, in_page[name], strict=True):
-                assert doubles(bits).tobytes() == np.ascontiguousarray(row).tobytes(), (name, drive)
-            compared[name] += 1
-    assert min(compared.values()) > DRIVES // 2, compared
+            for row, encoded in zip(rows, in_page[name], strict=True):
+                if has_arctan:
+                    assert doubles(encoded) == pytest.approx(row, rel=1e-11, abs=ROUNDING_SHARE * np.abs(row).max()), (
+                        name,
+                        drive,
+                    )
+                else:
+                    assert doubles(encoded).tobytes() == np.ascontiguousarray(row).tobytes(), (name, drive)
+            compared[name] += not has_arctan
+    assert min(compared.values()) > DRIVES // 3, compared
 
 
 def test_no_set_of_numbers_ends_in_a_trap(drives: list[sw.Drive]) -> None:
