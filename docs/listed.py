@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import strainwave as sw
-from strainwave.files.tables import LISTED
+from strainwave.files.tables import LISTED_FORMATS
 
 CONTENTS = "<!-- contents: the pages above -->"
 TOCTREE = re.compile(r"^<!-- toctree\n(.*?)\n-->$", re.MULTILINE | re.DOTALL)  # which a code host does not show
@@ -37,10 +37,10 @@ def formats() -> str:
     """Return the table of all formats of files, and what is to be said of some."""
     head = "| format | file | unit of a column | precision |\n|---|---|---|---|"
     rows = []
-    for each in LISTED:
+    for each in LISTED_FORMATS:
         suffixes = ", ".join(f"`{suffix}`" for suffix in each.suffixes)
         rows.append(f"| {each.title} | {suffixes} | {each.units} | {each.kept} |")
-    rules = (f"* **{each.title}**: {each.about}" for each in LISTED if each.about)
+    rules = (f"* **{each.title}**: {each.about}" for each in LISTED_FORMATS if each.about)
     return "\n".join([head, *rows, "", *rules])
 
 

@@ -113,7 +113,7 @@ ELSEWHERE = {
         "identification/results/drive.py": ALONE,
     },
     "Coulomb": {
-        "identification/results/undetermined.py": DIVIDED,
+        "identification/results/identifiability.py": DIVIDED,
         "compensation/bristle_observer.hpp": "what follows the measured motion by default",
         "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
@@ -124,7 +124,7 @@ ELSEWHERE = {
     },
     "MaxwellSlipFriction": {"identification/kinds/at_rest.py": AT_REST},
     "Stribeck": {
-        "identification/results/undetermined.py": DIVIDED,
+        "identification/results/identifiability.py": DIVIDED,
         "identification/kinds/at_rest.py": AT_REST,
         "friction/cyclic.hpp": "what it modulates by default",
     },
@@ -174,12 +174,11 @@ ELSEWHERE = {
     "StrainWave": {
         "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
-        "identification/results/ratio.py": SAID,
-        "identification/checks/unexplained.py": "the ratio that two encoders show, as one of teeth",
+        "identification/results/gear_so_far.py": SAID,
     },
     "Stochastic": {"analysis/steady.py": STEADY_RUNNING, "drive_model.hpp": MODEL},
     "LuGre": {
-        "identification/results/undetermined.py": DIVIDED,
+        "identification/results/identifiability.py": DIVIDED,
         "identification/kinds/at_rest.py": "whose breakaway torque ramps tell",
     },
     "Cyclic": {
@@ -207,7 +206,7 @@ ELSEWHERE = {
         "rig/virtual/printed.py": PRINTED,
         "identification/kinds/between_encoders.py": REACHED,
     },
-    "PlainRatio": {"identification/results/ratio.py": SAID, "rig/virtual/printed.py": PRINTED},
+    "PlainRatio": {"identification/results/gear_so_far.py": SAID, "rig/virtual/printed.py": PRINTED},
     "Regimes": {"rig/virtual/printed.py": PRINTED},
     "ThreeSegment": {
         "files/datasheet.py": SHEET,

@@ -49,7 +49,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 #
 # * `since …`: the type of the file, and the reasons. **Read these lines first.** If the type is wrong, all numbers are.
 # * `Coulomb and viscous, a delay, …`: the model. Effects are added as long as they improve the prediction.
-# * `RMS error on data held out: …`: the model was fitted to the first 70 % of the motion and predicts the last 30 %. Beside
+# * `RMS error on held-out data: …`: the model was fitted to the first 70 % of the motion and predicts the last 30 %. Beside
 #   it is what plain least squares leaves, then the share of the current that is not predicted.
 # * `current comes … behind`: this controller averages the current over its period of 10 ms, so the current is 5 ms late.
 #   The delay is estimated and corrected.
@@ -58,7 +58,7 @@ below.set(ylabel="motor current [A]", xlabel="time [s]")
 # * `current is counted in the sense of the output …`: in `strainwave` a positive current turns the motor forward, and the
 #   output of this gear turns against its motor. In this robot a positive current turns the joint forward. This is detected
 #   and corrected.
-# * `what the model leaves has a shape over the speed …`: a small part repeats, so it is no noise. The gear of this joint is
+# * `the residual has a shape over the speed …`: a small part repeats, so it is no noise. The gear of this joint is
 #   elastic and has a kinematic error, and this model has neither.
 # * The numbers: value ± standard deviation. The friction is at the motor's side; multiply it by 80 for the joint.
 #

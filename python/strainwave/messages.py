@@ -139,7 +139,7 @@ def with_options(message: str, *, names_columns: bool = True) -> str:
     text = re.sub(r" \(in Python (\w+=\{.*?\}|FileMapping\(.*?\))\)", "", text)
     text = re.sub(r'^(side) = "([^"]*)"', r"--\1 \2", text)
     text = re.sub(r"^rtol = ", "--tolerance ", text)
-    options = r"^(speed_limit|lowest_speed|torque_limit|rated_torque|load(?= is needed))\b"
+    options = r"^(speed_limit|lowest_speed|torque_limit|rated_torque|torque(?= is needed))\b"
     text = re.sub(options, lambda found: "--" + found[1].replace("_", "-"), text)
     listing = 'strainwave.catalogue() lists all gears, catalogue("drives") all drives'
     return text.replace(listing, "`strainwave list gears` lists all gears, `strainwave list drives` all drives")

@@ -10,7 +10,7 @@ from importlib import import_module
 from itertools import chain, count
 from math import isfinite, isnan, nan
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 from strainwave import typeset
 from strainwave.messages import one_line, shortened
@@ -30,6 +30,7 @@ MIN_NOTE_WIDTH = 24  # characters; a note with less room stands below its row
 MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
 PLAIN_DIGITS = 5  # of a number without a standard deviation
+COUNT_DIGITS = 9  # of a whole number without a unit, as the counts of an encoder
 FIELDS_BESIDE_ROWS = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
 _ATTRIBUTE = re.compile(r"^ {8}(\w[\w, ]*): (.*(?:\n {12}.*)*)", re.MULTILINE)  # of a docstring
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
@@ -165,6 +166,7 @@ class Reported:
     """Base of results that have a report."""
 
     __slots__ = ()
+    _report_module: ClassVar[str] = "strainwave.report.files_of"  # by name, as rooms of results know nothing of reports
 
     def report(self, folder: str | Path) -> Path:
         """Write the report of the result and its files, as the command does.
@@ -182,13 +184,8 @@ class Reported:
 
         from strainwave.files.writing import write_folder
 
-        write_folder(Path(folder), self._files())
+        write_folder(Path(folder), import_module(self._report_module).files_of(self))
         return Path(folder) / "report.html"
-
-    def _files(self) -> Mapping[str, str | bytes]:
-        """Return the files of the report by name; imported by name, as the rooms of results know nothing of that of reports."""
-        files: Mapping[str, str | bytes] = import_module("strainwave.report.files_of").files_of(self)
-        return files
 
 
 # ---- Rows of a dataclass ---------------------------------------------------------------------------------------------
@@ -314,6 +311,8 @@ def number_text(row: Row) -> str:
 
     >>> number_text(Row("k1", 31234.0, "N.m/rad", 870.0)), number_text(Row("speed", (0.0, 2.5))), number_text(Row("time", None))
     ('31230 ± 870', '0 to 2.5', '—')
+    >>> number_text(Row("counts", 131072.0)), number_text(Row("k1", 131072.0, "N.m/rad"))
+    ('131072', '131070')
     """
     value = row.value
     if isinstance(value, bool):
@@ -324,7 +323,10 @@ def number_text(row: Row) -> str:
         return value or "—"
     if isnan(value):
         return "—"
-    return typeset.uncertain(value, row.sigma) if row.sigma >= 0.0 else typeset.number(value, PLAIN_DIGITS)
+    if row.sigma >= 0.0:
+        return typeset.uncertain(value, row.sigma)
+    is_count = row.unit in ("", "1") and float(value).is_integer()
+    return typeset.number(value, COUNT_DIGITS if is_count else PLAIN_DIGITS)
 
 
 def in_one_line(rows: Iterable[Row]) -> str:

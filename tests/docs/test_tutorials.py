@@ -32,7 +32,7 @@ def wrong_assumptions(page: str) -> None:
     assert "FAILED: friction_colleague.csv: its input would turn at 3000 rad/s" in sections[0]
     for section, names in ((1, ["input speed", "friction of the start set"]), (3, ["agreement of files"])):
         assert re.findall(r"^([a-z][a-z ]+): ", sections[section], re.MULTILINE) == names
-    assert {"unexplained on data held out", "input speed"} <= set(re.findall(r"^([a-z ]+): ", sections[2], re.MULTILINE))
+    assert {"unexplained on held-out data", "input speed"} <= set(re.findall(r"^([a-z -]+): ", sections[2], re.MULTILINE))
     assert re.findall(r"(\d+) failed checks", sections[4]) == ["0", "0"]
     single, double = (float(text) for text in re.findall(r"load\.gravity_torque +(\S+)", sections[4]))
     assert double == pytest.approx(2.0 * single, rel=1e-3)

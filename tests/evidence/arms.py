@@ -405,7 +405,7 @@ def main() -> None:
     import tempfile
 
     print(
-        f"{'file':20} {'motion':11} {'identify':>9} {'least squares':>14} {'with model':>11}   (error held out, of what varies)"
+        f"{'file':20} {'motion':11} {'identify':>9} {'least squares':>14} {'with model':>11}   (error held out, of the signal)"
     )
     with tempfile.TemporaryDirectory() as folder:
         for sort in SORTS:

@@ -30,7 +30,7 @@ from strainwave.identification.candidates.torsion.dissipation import (
     Regimes,
     Without,
 )
-from strainwave.identification.candidates.torsion.springs import PLAIN, Backlash, Negligible, SpringKind
+from strainwave.identification.candidates.torsion.springs import PLAIN_SPRINGS, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 from strainwave.parameters import every
@@ -49,7 +49,7 @@ def path() -> Array:
     return np.interp(np.linspace(0.0, travelled[-1], SAMPLES), travelled, ends)
 
 
-KINDS: tuple[SpringKind, ...] = (*PLAIN, *(Backlash(kind) for kind in PLAIN))
+KINDS: tuple[SpringKind, ...] = (*PLAIN_SPRINGS, *(Backlash(kind) for kind in PLAIN_SPRINGS))
 
 
 def spring(words: str, draw: Draw) -> Any:

@@ -44,7 +44,7 @@ class RoundTrip:
 
     Attributes:
         name: of the record
-        held_out: the error that identify stated on data held out; not a number if there is none
+        held_out: the error that identify stated on held-out data; not a number if there is none
         stated: the error of the written gear on the whole record, as its file has it
         predicted: that of `predict`
         problem: why the gear is refused, or what is wrong with it; empty if nothing is

@@ -60,12 +60,14 @@ RESULTS = (
 )
 NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning")),
-    "files.entries.check_line",
+    *(f"files.entries.{name}" for name in ("check_line", "quantity_of", "Form", "schema", "entry_schema")),
+    *(f"files.entries.{name}" for name in ("elements", "checked", "inline", "origin_lines")),
+    *(f"files.gear_set.{name}" for name in ("loaded_set", "forget_loaded_sets", "spelled")),
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced")),
     *(f"identification.experiments.experiment.{name}" for name in ("Experiment", "Nuisance", "sensible")),
     "identification.experiments.friction_table.FrictionTable",
-    *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input")),
-    "identification.experiments.drive_log.DriveLog",
+    *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input", "series_compliance")),
+    *(f"identification.experiments.drive_log.{name}" for name in ("DriveLog", "DrivenLog", "driven")),
     *(f"drive_log.DriveLog.{name}" for name in ("beginning", "stands_still")),
     *(f"{name}.predict" for name in ("drive_log.DriveLog", "friction_table.FrictionTable", "torsion_loop.TorsionLoop")),
     "torsion_loop.TorsionLoop.path",

@@ -59,5 +59,5 @@ def test_the_demonstration_names_its_reading_of_table_2_which_contradicts_the_ot
     assert isinstance(found.gear_set.gear.friction_input, Coulomb)
     (check,) = found.failed
     assert "as friction" in found.files[0].name
-    assert "gear.friction_input.viscous = 0.03084" in check.message
-    assert "gear.friction_input.coulomb = 0.01255" in check.message
+    assert "gear.friction_input.viscous = 0.0308 ± 0.0023 N·m·s/rad, 34.6 σ above" in check.message
+    assert "gear.friction_input.coulomb = 0.0126 ± 0.0034 N·m, 6.1 σ below" in check.message

@@ -246,8 +246,8 @@ def _pushed(drive: Drive, state: Array, freed: Array, inputs: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Slow(ComparedByFields):
-    """Slow motions from `start`, shafts that stick left where they are."""
+class _Path(ComparedByFields):
+    """A drive that moves from `start` under constant inputs."""
 
     drive: Drive
     start: Array
@@ -256,6 +256,10 @@ class _Slow(ComparedByFields):
     @cached_property
     def layout(self) -> StateLayout:
         return StateLayout(self.drive)
+
+
+class _Slow(_Path):
+    """Slow motions, shafts that stick left where they are."""
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -342,17 +346,8 @@ def _unsteady(drive: Drive, inputs: Array, why: str) -> str:
     return f"the drive cannot rest at {command}, {load_torque}, nor run steadily: {why}"
 
 
-@dataclass(frozen=True, eq=False)
-class _Steady(ComparedByFields):
+class _Steady(_Path):
     """Running at constant speed, from the angles of `start`."""
-
-    drive: Drive
-    start: Array
-    inputs: Array
-
-    @cached_property
-    def layout(self) -> StateLayout:
-        return StateLayout(self.drive)
 
     def rows(self, rates: Rates) -> list[int]:
         """The rates that must vanish; those of friction and of sensors have."""

@@ -8,6 +8,8 @@ import warnings
 from contextlib import redirect_stdout
 from io import StringIO, TextIOWrapper
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import wrap
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -198,12 +200,27 @@ def _warn(message: Warning | str, *_: object, **__: object) -> None:
     _print(f"strainwave: warning: {one_line(str(message))}\n", sys.stderr)
 
 
+def _to_width(text: str, width: int) -> str:
+    """Return a text whose long lines end between words, as a terminal ends them anywhere; commands stay, to be copied.
+
+    >>> print(_to_width("  note: the output turns one way only", 24))
+      note: the output turns
+        one way only
+    """
+    lines = list[str]()
+    for line in text.split("\n"):
+        start = line[: len(line) - len(line.lstrip())]
+        keep = len(line) <= width or line.lstrip().startswith("strainwave ")
+        lines += [line] if keep else wrap(line, width, subsequent_indent=f"{start}  ", break_on_hyphens=False)
+    return "\n".join(lines)
+
+
 def _print(text: str, stream: TextIO) -> None:
     """Print the output of a verb. Its work is done, so that a missing terminal or a full disk behind a pipe is no failure."""
     if isinstance(stream, TextIOWrapper):
         stream.reconfigure(errors="replace")  # letters that the terminal lacks
     try:
-        print(text, end="", file=stream, flush=True)
+        print(_to_width(text, get_terminal_size().columns) if stream.isatty() else text, end="", file=stream, flush=True)
     except OSError as error:
         os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())  # Python tries again at the exit
         if not isinstance(error, BrokenPipeError):  # whoever read the output has seen enough

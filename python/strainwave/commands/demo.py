@@ -35,7 +35,7 @@ def demo(out: Annotated[Path, folder("Folder for the results.")] = Path("out/dem
             turn(name.replace("-", " "))
             result, folder = shown.identified(), out / name
             provenance = Provenance.of_this_command(list(shown.files))
-            write_folder(folder, identify_files(result, provenance, accepted=True, folder=folder))
+            write_folder(folder, identify_files(result, provenance, accepted=True, folder=folder, remark=shown.remark))
             print("\n".join([shown.heading, "", *identify_summary(result), *[shown.remark] * bool(shown.remark)]))
             print(f"wrote {folder / 'gear.toml'} and {folder / 'report.html'}")
             print("\n".join([*next_lines(result, folder), ""]))

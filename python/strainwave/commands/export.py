@@ -54,15 +54,6 @@ class Conversion(NamedTuple):
     argument: Callable[[Any], Any]
 
 
-def _itself(path: Path | None) -> Path | None:
-    return path
-
-
-def _with_binaries(platforms: list[str] | None) -> list[str] | None:
-    """Return the platforms that get a binary; None if none is given."""
-    return None if platforms is None else [each for each in platforms if each != "source"]
-
-
 CONVERSIONS = {
     "into": Conversion(
         Annotated[Path | None, typer.Option(help="MJCF file of a robot that gets the gear.")], lambda path: path
@@ -75,7 +66,7 @@ CONVERSIONS = {
                 help="Of a binary, as x86_64-windows; may be repeated. `source` makes no binary. Default: this machine.",
             ),
         ],
-        _with_binaries,
+        lambda platforms: None if platforms is None else [each for each in platforms if each != "source"],
     ),
 }
 

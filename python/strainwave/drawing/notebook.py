@@ -29,7 +29,7 @@ def html(kind: str, headline: str, rows: Sequence[Row], remarks: Sequence[str], 
     more = len(rows) - MAX_PRINTED_ROWS
     parts = [
         f"<p><strong>{_text(kind)}</strong> {_text(headline)}</p>",
-        f"<table>{''.join(map(_row, rows[:MAX_PRINTED_ROWS]))}</table>" if rows else "",
+        f'<div style="overflow-x: auto"><table>{"".join(map(_row, rows[:MAX_PRINTED_ROWS]))}</table></div>' if rows else "",
         f"<p>… and {more} more: <code>to_dict()</code> has all</p>" if more > 0 else "",
         *(f"<p><em>{_text(remark)}</em></p>" for remark in remarks),
         "" if figure is None else f'<div style="max-width: 36em">{_drawing(figure, f"{kind} {headline}")}</div>',
@@ -39,11 +39,12 @@ def html(kind: str, headline: str, rows: Sequence[Row], remarks: Sequence[str], 
 
 def _row(row: Row) -> str:
     left = 'style="text-align: left"'
+    last = 'style="text-align: left; width: 100%"'  # takes what a text is wider than the other columns
     name = f"<th {left}>{_text(row.name)}</th>"
     if isinstance(row.value, str):
         return f'<tr>{name}<td colspan="3" {left}>{_text(", ".join(filter(None, (row.value, row.note))))}</td></tr>'
     number = f'<td style="text-align: right; white-space: nowrap">{_text(number_text(row))}</td>'
-    return f"<tr>{name}{number}<td {left}>{_text(typeset.unit(row.unit))}</td><td {left}>{_text(row.note)}</td></tr>"
+    return f"<tr>{name}{number}<td {left}>{_text(typeset.unit(row.unit))}</td><td {last}>{_text(row.note)}</td></tr>"
 
 
 def _text(text: str) -> str:

@@ -10,7 +10,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple, ParamSpec, get_args
 
-from strainwave.files.entries import OPPOSITE
+from strainwave.files.entries import OPPOSITE_SENSE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -95,7 +95,7 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
     """
     paths = dict[str, list[str]]()
     for path, entry in gear_set.sources.items():
-        if entry.source.startswith(NOT_BY_ITSELF) or OPPOSITE in entry.source:
+        if entry.source.startswith(NOT_BY_ITSELF) or OPPOSITE_SENSE in entry.source:
             paths.setdefault(entry.source, []).append(path)
     remarks = (f"{listed(names)}: {source}" for source, names in paths.items())
     lines = [f"numbers of {gear_set.name}", *origins] if (origins := gear_set.origins) else []

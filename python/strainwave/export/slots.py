@@ -43,7 +43,7 @@ MIN_MEMBERS = 19  # drawn gears, of which the weakest stands for that share
 MIN_POINTS, MAX_POINTS = 4, 4096  # of a table
 MAX_VALUES = 1_000_000  # of a torque offset along a motion
 MAX_SPEED = 1e6  # rad/s
-MAX_LOAD = 1e9  # N.m
+MAX_TORQUE = 1e9  # N.m
 MIN_RATED_TORQUE = 1e-9  # N.m
 MAX_PERMILLE = 32767  # that a 16 bit number holds
 
@@ -59,7 +59,7 @@ class Request:
     speed: float | None
     threshold: float | None
     points: int | None
-    load: float | None
+    torque: float | None
     rated_torque: float | None
     motion: Scenario | None
     travel: float
@@ -103,7 +103,7 @@ class Request:
         """Return the friction over speeds of the side, shape (speeds, angles), in the unit wanted."""
         angle = 2.0 * np.pi * abs(self.ratio) / angles * np.arange(angles)
         at_input = (speed * self.speed_ratio)[:, np.newaxis]
-        return np.asarray(self.per_torque * steady_torque(gear, at_input, angle, self.load or 0.0, self.temperature).friction)
+        return np.asarray(self.per_torque * steady_torque(gear, at_input, angle, self.torque or 0.0, self.temperature).friction)
 
     def speed_range(self) -> tuple[float, float]:
         """Return the threshold and the largest speed of the side [rad/s]."""
@@ -157,7 +157,7 @@ def slot(
     speed: float | None = None,
     threshold: float | None = None,
     points: int | None = None,
-    load: float | None = None,
+    torque: float | None = None,
     rated_torque: float | None = None,
     motion: Scenario | None = None,
     travel: float = 0.2,
@@ -179,7 +179,7 @@ def slot(
             input speed, else 100 rad/s of the input; for a map 0.2 and for torque-offset 20 rad/s of the input
         threshold: speed of the output below which friction is not compensated in full [rad/s]; usually 1 % of the largest
         points: of a speed-table, half for each sense, or of an anticogging-map, per turn of the input
-        load: torque at the output that opposes forward motion [N.m]
+        torque: at the output, opposing forward motion [N.m]
         rated_torque: of the motor [N.m], which torque-offset refers to; if not given, the rating motor_rated_torque of the set
         motion: of the output from rest, for torque-offset; if not given, one period to and fro
         travel: of that motion, from end to end [rad]
@@ -215,7 +215,7 @@ def slot(
         raise ValueError('unit = "A": a torque-offset is in permille of the rated torque; leave the unit out')
     _refuse_unused(
         name,
-        speed=speed, threshold=threshold, points=points, load=load, rated_torque=rated_torque, motion=motion, travel=travel,
+        speed=speed, threshold=threshold, points=points, torque=torque, rated_torque=rated_torque, motion=motion, travel=travel,
         period=period, members=members, seed=seed,
     )  # fmt: skip
     return SLOTS[name](
@@ -227,7 +227,7 @@ def slot(
             speed,
             threshold,
             points,
-            None if load is None else arguments.number("load", load, "N.m", "[]", -MAX_LOAD, MAX_LOAD),
+            None if torque is None else arguments.number("torque", torque, "N.m", "[]", -MAX_TORQUE, MAX_TORQUE),
             None if rated_torque is None else arguments.number("rated_torque", rated_torque, "N.m", "[)", MIN_RATED_TORQUE),
             motion,
             arguments.number("travel", travel, "rad", low=0.0),
@@ -288,7 +288,7 @@ class FullFriction:
                 f"{MEASUREMENT_OF_EFFECT['friction']}"
             )
         over = f"{low:.3g} to {top:.3g} rad/s of the {request.side} in both senses, over a turn of the output"
-        over += f", under {request.load:g} N.m" if request.load else ""
+        over += f", under {request.torque:g} N·m" if request.torque else ""
         return cls(speed, torque, request.unit, over)
 
     @property
@@ -408,9 +408,9 @@ def _drawn(request: Request) -> Iterator[Gear]:
 def anticogging_map(request: Request) -> Exported:
     """Return what the motor adds over the angle of the input: reaction of the error, friction that varies, cogging."""
     count = arguments.whole("points", 256 if request.points is None else request.points, MIN_POINTS, MAX_POINTS)
-    if request.load is None:
+    if request.torque is None:
         raise ValueError(
-            f"load is needed for the slot {request.name}: the reaction of the kinematic error is in proportion to the torque "
+            f"torque is needed for the slot {request.name}: the reaction of the kinematic error is in proportion to the torque "
             "[N.m] at the output"
         )
     turns = min(max(round(abs(request.ratio)), 1), MAX_TURNS)
@@ -422,15 +422,15 @@ def anticogging_map(request: Request) -> Exported:
     there = both[speed]
     if not there.ripple.any():
         raise ValueError(
-            f"{request.gear_set.name}: neither kinematic error nor friction of the gear varies with the angle at a load of "
-            f"{request.load:g} N.m, so the map is zero; {MEASUREMENT_OF_EFFECT['kinematic error']}"
+            f"{request.gear_set.name}: neither kinematic error nor friction of the gear varies with the angle under "
+            f"{request.torque:g} N·m, so the map is zero; {MEASUREMENT_OF_EFFECT['kinematic error']}"
         )
     values = mean_over_last(there.ripple)[::COMPARED_ANGLES_PER_POINT]
     applied = np.interp(fine, fine[::COMPARED_ANGLES_PER_POINT], values, period=2.0 * np.pi)[:, np.newaxis]
     losses = tuple(
         ExportLoss.between(
             "ripple", turn.ripple - applied, request.unit, _rms(turn.friction),
-            f"{turns} turns of the input at {each:.3g} rad/s under {request.load:g} N.m", "friction",
+            f"{turns} turns of the input at {each:.3g} rad/s under {request.torque:g} N·m", "friction",
         )
         for each, turn in both.items()
     )  # fmt: skip
@@ -439,7 +439,7 @@ def anticogging_map(request: Request) -> Exported:
         {"input_angle": fine[::COMPARED_ANGLES_PER_POINT], column: values}, {"input_angle": "rad", column: request.unit}
     )
     numbers = {
-        "points": (float(count), "1"), "output_load": (request.load, "N.m"), "speed": (speed, "rad/s"),
+        "points": (float(count), "1"), "output_torque": (request.torque, "N.m"), "speed": (speed, "rad/s"),
         "amplitude": (float(np.abs(values).max()), request.unit),
     }  # fmt: skip
     sign = "the value is added at its input angle, positive forwards; the mean torque is left out, lines join the points"
@@ -461,7 +461,7 @@ class _OverTurn:
 
 
 def _over_turn(request: Request, angle: Array, speed: float) -> _OverTurn:
-    resisting, reaction = steady_torque(request.gear, speed, angle, request.load or 0.0, request.temperature)
+    resisting, reaction = steady_torque(request.gear, speed, angle, request.torque or 0.0, request.temperature)
     part = request.gear_set.motor
     cogging = getattr(part, "cogging_torque", 0.0) * np.sin(getattr(part, "cogging_order", 0.0) * angle)
     varying = resisting - resisting.flat[0]  # first, so that what does not vary leaves no rounding
@@ -543,12 +543,12 @@ SLOTS: dict[str, Callable[[Request], Exported]] = {
     "anticogging-map": anticogging_map,
     "torque-offset": torque_offset,
 }
-_OF_FRICTION = frozenset({"speed", "threshold", "load"})
+_OF_FRICTION = frozenset({"speed", "threshold", "torque"})
 OPTIONS: dict[str, frozenset[str]] = {
     "viscous-coulomb-scale": _OF_FRICTION | {"members", "seed"},
     "coulomb-viscous": _OF_FRICTION,
     "speed-table": _OF_FRICTION | {"points"},
-    "anticogging-map": frozenset({"speed", "points", "load"}),
+    "anticogging-map": frozenset({"speed", "points", "torque"}),
     "torque-offset": frozenset({"speed", "rated_torque", "motion", "travel", "period"}),
 }  # that a slot uses, besides side, unit and temperature
 OF_THE_INPUT = ("anticogging-map", "torque-offset")

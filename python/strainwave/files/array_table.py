@@ -120,16 +120,16 @@ class GridTable:
 
     def _on(self, common: Grid, grids: Sequence[Grid], sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """Return the columns of some sources at the instants of a grid."""
-        found = {}
+        resampled = {}
         for source in sources:
             if not source.position:
-                found[source.name] = common.time
+                resampled[source.name] = common.time
                 continue
             name = self.labels[source.position].text
             grid = next(each for each in grids if name in each.columns)
             values = grid.columns[name]
-            found[source.name] = values if grid.time is common.time else np.interp(common.time, grid.time, values)
-        return found
+            resampled[source.name] = values if grid.time is common.time else np.interp(common.time, grid.time, values)
+        return resampled
 
 
 def _step(grid: Grid) -> float:

@@ -9,7 +9,7 @@ import sqlite3
 import struct
 from array import array
 from binascii import crc32
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import quote
@@ -91,9 +91,9 @@ class _MessageReader:
         size = struct.calcsize(f"<{form[-1]}")
         if not self.is_ros1 and not form.startswith("0"):
             self.place += -self.place % size
-        found = struct.unpack_from(self.order + form, self.content, self.place)
-        self.place += size * len(found)
-        return found
+        numbers = struct.unpack_from(self.order + form, self.content, self.place)
+        self.place += size * len(numbers)
+        return numbers
 
     def text(self) -> str:
         (length,) = self.take("I")
@@ -187,17 +187,17 @@ def _unpacked(content: memoryview, packing: str, size: int, budget: ReadBudget) 
         return content
     budget.take_bytes(size, "a packed chunk")
     if packing == "bz2":
-        found = bz2.BZ2Decompressor().decompress(content, size + 1)
+        unpacked = bz2.BZ2Decompressor().decompress(content, size + 1)
     elif packing in ("lz4", "zstd"):
         import pyarrow
 
         with pyarrow.CompressedInputStream(pyarrow.BufferReader(content), packing) as stream:
-            found = stream.read(size + 1)
+            unpacked = stream.read(size + 1)
     else:
         raise RefusedFile(f"a chunk is packed by {quoted(packing)}; bz2, lz4 and zstd are read")
-    if len(found) != size:
+    if len(unpacked) != size:
         raise RefusedFile(f"a packed chunk does not have the {size} bytes that it claims")
-    return memoryview(found)
+    return memoryview(unpacked)
 
 
 def _kind(name: str) -> str:
@@ -237,12 +237,12 @@ def _records(content: memoryview, budget: ReadBudget) -> Iterator[tuple[Mapping[
 
 
 def _fields(header: memoryview) -> dict[str, bytes]:
-    place, found = 0, {}
+    place, fields = 0, {}
     while place < len(header):
         field, place = _sized(header, place)
         name, _, value = bytes(field).partition(b"=")
-        found[name.decode()] = value
-    return found
+        fields[name.decode()] = value
+    return fields
 
 
 def _sized(content: memoryview, place: int, form: str = "I") -> tuple[memoryview, int]:
@@ -316,7 +316,8 @@ def _of_sqlite(
         if content is not None:
             opened.deserialize(content)
         opened.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, size)
-        opened.set_progress_handler(_step_counter(), STEPS_AT_A_TIME)
+        left = iter(range(MAX_SQL_STEPS // STEPS_AT_A_TIME))
+        opened.set_progress_handler(lambda: next(left, None) is None, STEPS_AT_A_TIME)
         opened.execute("PRAGMA trusted_schema = OFF")
         for table in ("topics", "messages"):
             _check_table(opened, table)
@@ -334,17 +335,11 @@ def _of_sqlite(
 
 
 def _check_table(opened: sqlite3.Connection, name: str) -> None:
-    found = opened.execute("SELECT type, rootpage FROM sqlite_master WHERE lower(name) = ?", [name]).fetchall()
-    if [kind for kind, _ in found] != ["table"] or not found[0][1]:
+    tables = opened.execute("SELECT type, rootpage FROM sqlite_master WHERE lower(name) = ?", [name]).fetchall()
+    if [kind for kind, _ in tables] != ["table"] or not tables[0][1]:
         raise RefusedFile(f"{quoted(name)} is no table of its own in this database, as it is in a bag")
     if any(column[-1] for column in opened.execute(f"PRAGMA table_xinfo({name})")):
         raise RefusedFile(f"table {quoted(name)} has a computed column, which no bag has")
-
-
-def _step_counter() -> Callable[[], int]:
-    """Return what stops a query after `MAX_SQL_STEPS`."""
-    left = iter(range(MAX_SQL_STEPS // STEPS_AT_A_TIME))
-    return lambda: next(left, None) is None
 
 
 # ---- The table -------------------------------------------------------------------------------------------------------
@@ -412,11 +407,14 @@ class _Series:
         return Grid(time, {f"{prefix}{name}": np.array(values)[order] for name, values in self.columns.items()})
 
 
-ABOUT = (
-    "a file, or the folder of a bag. Each joint state has `knee.position`, `knee.velocity`, `knee.effort` over the time in "
-    "its header; topics of plain numbers are columns, too. With several topics of joint states, the topic precedes the "
-    "name."
-)
 FORMAT: Format = Format(
-    (".bag", ".mcap", ".db3"), open_bag, "Bags of ROS 1 and 2", "of the message: rad, rad/s, N.m", about=ABOUT
+    (".bag", ".mcap", ".db3"),
+    open_bag,
+    "Bags of ROS 1 and 2",
+    "of the message: rad, rad/s, N.m",
+    about=(
+        "a file, or the folder of a bag. Each joint state has `knee.position`, `knee.velocity`, `knee.effort` over the time in "
+        "its header; topics of plain numbers are columns, too. With several topics of joint states, the topic precedes the "
+        "name."
+    ),
 )

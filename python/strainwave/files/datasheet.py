@@ -12,7 +12,7 @@ from strainwave.files import typical_gear as typical
 from strainwave.files.entries import Entry, Figure, Quantity, quantity_of
 from strainwave.messages import listed, shortened, unquoted
 
-UNITS = {
+FIGURE_UNITS = {
     "k1": "N.m/rad", "k2": "N.m/rad", "k3": "N.m/rad", "t1": "N.m", "t2": "N.m",
     "hysteresis_loss": "rad", "lost_motion": "rad", "transmission_accuracy": "rad",
     "starting_torque": "N.m", "backdriving_torque": "N.m", "no_load_running_torque": "N.m", "no_load_running_speed": "rad/s",
@@ -20,7 +20,7 @@ UNITS = {
     "rated_torque": "N.m", "average_torque": "N.m", "peak_torque": "N.m", "momentary_torque": "N.m",
     "ratcheting_torque": "N.m", "buckling_torque": "N.m", "maximum_input_speed": "rad/s", "average_input_speed": "rad/s",
 }  # fmt: skip
-RATINGS = (*(name for name in UNITS if name.endswith("_torque") and name.split("_")[0] in
+RATING_NAMES = (*(name for name in FIGURE_UNITS if name.endswith("_torque") and name.split("_")[0] in
              ("rated", "average", "peak", "momentary", "ratcheting", "buckling")),
            "maximum_input_speed", "average_input_speed", "lost_motion")  # fmt: skip
 FIGURE_RANGES = {  # of the figures of a strain wave gear, and far beyond, by their unit
@@ -29,7 +29,7 @@ FIGURE_RANGES = {  # of the figures of a strain wave gear, and far beyond, by th
 }  # fmt: skip
 SIZE_RANGE = (1.0, 1000.0)  # as in the makers' names
 MAX_SPREAD = 10.0  # relative
-TABLE = "datasheet"
+SHEET_TABLE = "datasheet"
 
 
 @dataclass(frozen=True)
@@ -109,47 +109,54 @@ def from_datasheet(
     >>> found.sources["gear.stiffness.k2"].assumed, round(found.gear.stiffness.k2, -2)
     (True, 48200.0)
     """
-    unknown = [each for each in figures if each not in UNITS]
+    unknown = [each for each in figures if each not in FIGURE_UNITS]
     if unknown:
-        raise TypeError(f"{unquoted(unknown[0])} is no figure of a data sheet; there are {', '.join(UNITS)}")
-    given = {each: quantity_of(each, figure, UNITS[each], source) for each, figure in figures.items() if figure is not None}
-    for each, quantity in given.items():
-        arguments.number(each, quantity.to(UNITS[each]).value, UNITS[each], "[]", *FIGURE_RANGES[UNITS[each]])
+        raise TypeError(f"{unquoted(unknown[0])} is no figure of a data sheet; there are {', '.join(FIGURE_UNITS)}")
+    quantities = {
+        each: quantity_of(each, figure, FIGURE_UNITS[each], source) for each, figure in figures.items() if figure is not None
+    }
+    for each, quantity in quantities.items():
+        arguments.number(
+            each, quantity.to(FIGURE_UNITS[each]).value, FIGURE_UNITS[each], "[]", *FIGURE_RANGES[FIGURE_UNITS[each]]
+        )
     sheet = _Sheet.of(
         _kinematics(ratio, fixed),
         abs(float(ratio)),
-        given,
+        quantities,
         size,
         arguments.number("spread", spread, brackets="[]", low=0.0, high=MAX_SPREAD),
         source,
     )
     gear, sources, notes = sheet.gear()
     called = name or f"gear of ratio {abs(float(ratio)):g}"
-    ratings = {each: given[each] for each in RATINGS if each in given}
+    ratings = {each: quantities[each] for each in RATING_NAMES if each in quantities}
     return DatasheetGear(gear, called, maker, source, sources, " ".join(notes), ratings)
 
 
 def read(content: Mapping[str, Any]) -> DatasheetGear:
     """Return the gear of a file whose table [datasheet] contains the figures, as `from_datasheet` takes them."""
-    texts = {key: value for key, value in content.items() if key != TABLE}
+    texts = {key: value for key, value in content.items() if key != SHEET_TABLE}
     for key, value in texts.items():
         if key not in ("name", "maker", "source"):
             raise ValueError(
-                f"{unquoted(key)}: only name, maker and source may stand outside [{TABLE}]; to add, save the set to a gear file"
+                f"{unquoted(key)}: only name, maker and source may stand outside [{SHEET_TABLE}]; to add, save the set "
+                "to a gear file"
             )
         arguments.text(key, value)
-    sheet = content[TABLE]
+    sheet = content[SHEET_TABLE]
     if not isinstance(sheet, dict):
-        raise ValueError(f'{TABLE} must be a table: [{TABLE}], below it ratio = -100, k1 = "31e3 N.m/rad"')
+        raise ValueError(f'{SHEET_TABLE} must be a table: [{SHEET_TABLE}], below it ratio = -100, k1 = "31e3 N.m/rad"')
     if "ratio" not in sheet:
-        raise ValueError(f"[{TABLE}] ratio is missing; write ratio = -100")
-    keys = {"ratio", "fixed", "size", "spread", *UNITS}
+        raise ValueError(f"[{SHEET_TABLE}] ratio is missing; write ratio = -100")
+    keys = {"ratio", "fixed", "size", "spread", *FIGURE_UNITS}
     if wrong := [key for key in sheet if key not in keys]:
-        raise ValueError(f"[{TABLE}] {unquoted(wrong[0])}: not a figure of a data sheet; it has {', '.join(sorted(keys))}")
-    for key in UNITS:
-        if key in sheet and not isinstance(sheet[key], str) and UNITS[key] != "1":
+        raise ValueError(
+            f"[{SHEET_TABLE}] {unquoted(wrong[0])}: not a figure of a data sheet; it has {', '.join(sorted(keys))}"
+        )
+    for key in FIGURE_UNITS:
+        if key in sheet and not isinstance(sheet[key], str) and FIGURE_UNITS[key] != "1":
             written = shortened(sheet[key])
-            raise ValueError(f'[{TABLE}] {key} = {written} has no unit; write {key} = "{written} {UNITS[key]}"')
+            raise ValueError(f'[{SHEET_TABLE}] {key} = {written} has no unit; write {key} = "{written} {FIGURE_UNITS[key]}"')
     return from_datasheet(**texts, **sheet)
 
 
@@ -174,7 +181,7 @@ class _Sheet:
             value = arguments.number("size", size, "", "[]", *SIZE_RANGE)
             return cls(moves, nominal, given, value, f"size {value:g}", 0.0, spread, source)
         for names in typical.SIZED_BY:
-            figures = {name: given[name].to(UNITS[name]).value for name in names if name in given}
+            figures = {name: given[name].to(FIGURE_UNITS[name]).value for name in names if name in given}
             if figures:
                 value = typical.mean_size(figures, nominal)
                 laws = [typical.law(name, nominal) for name in figures]
@@ -186,7 +193,7 @@ class _Sheet:
         )
 
     def value(self, name: str) -> float | None:
-        return self.given[name].to(UNITS[name]).value if name in self.given else None
+        return self.given[name].to(FIGURE_UNITS[name]).value if name in self.given else None
 
     def entry(self, name: str, detail: str, spread: float | None = None) -> Entry:
         """Return the entry of a number that a figure of the sheet determines."""

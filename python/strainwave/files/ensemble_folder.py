@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 Array = NDArray[np.float64]
-PLAN = "plan.parquet"
+PLAN_FILE = "plan.parquet"
 MAX_SHOWN_CHARACTERS = 40  # of a value in a message
 
 
@@ -68,18 +68,18 @@ class EnsembleFolder(ComparedByFields):
         Raises:
             ValueError: there is none, or it is damaged
         """
-        if not (path / PLAN).exists():
-            raise ValueError(one_line(f"{path} holds no ensemble: there is no {PLAN}"))
-        table = _read(path / PLAN)
+        if not (path / PLAN_FILE).exists():
+            raise ValueError(one_line(f"{path} holds no ensemble: there is no {PLAN_FILE}"))
+        table = _read(path / PLAN_FILE)
         sound = False
         with suppress(KeyError, TypeError, ValueError, RecursionError):
             plan = json.loads(table.schema.metadata[b"plan"])
             parameters = {name: table[name].to_numpy() for name in table.column_names}
-            found = EnsembleFolder(path, plan["asked"], parameters, plan["units"], plan["size"])
-            sound = table.schema.metadata[b"identity"] == found.identity and type(found.size) is int and found.size > 0
+            folder = EnsembleFolder(path, plan["asked"], parameters, plan["units"], plan["size"])
+            sound = table.schema.metadata[b"identity"] == folder.identity and type(folder.size) is int and folder.size > 0
         if not sound:
-            raise ValueError(one_line(f"{path / PLAN} is damaged; the parts of its folder cannot be checked without it"))
-        return found
+            raise ValueError(one_line(f"{path / PLAN_FILE} is damaged; the parts of its folder cannot be checked without it"))
+        return folder
 
     def begin(self) -> EnsembleFolder:
         """The plan that stands in the folder from now on: this one, or an equal one that was begun earlier.
@@ -89,21 +89,18 @@ class EnsembleFolder(ComparedByFields):
         """
         for folder in (self.path, self.path / "samples", self.path / "members"):
             remove_drafts(folder)
-        if (self.path / PLAN).exists():
-            found = EnsembleFolder.open(self.path)
-            self._check_equal(found.asked)
-            return found
+        if (self.path / PLAN_FILE).exists():
+            begun = EnsembleFolder.open(self.path)
+            differing = [name for name in {**self.asked, **begun.asked} if self.asked.get(name) != begun.asked.get(name)]
+            if differing:
+                both = "; ".join(f"{name} is {begun.asked.get(name)} there, {self.asked.get(name)} here" for name in differing)
+                raise FileExistsError(one_line(f"{self.path} holds another ensemble: {both}; take another folder"))
+            return begun
         if any(self.path.iterdir()):
             raise FileExistsError(one_line(f"{self.path} is not empty; take another folder, or move what is there"))
         plan = json.dumps({"asked": dict(self.asked), "units": dict(self.units), "size": self.size})
-        _write(self.path / PLAN, dict(self.parameters), {}, {"plan": plan, "identity": self.identity})
+        _write(self.path / PLAN_FILE, dict(self.parameters), {}, {"plan": plan, "identity": self.identity})
         return self
-
-    def _check_equal(self, found: Mapping[str, str]) -> None:
-        names = [name for name in {**self.asked, **found} if self.asked.get(name) != found.get(name)]
-        if names:
-            differing = "; ".join(f"{name} is {found.get(name)} there, {self.asked.get(name)} here" for name in names)
-            raise FileExistsError(one_line(f"{self.path} holds another ensemble: {differing}; take another folder"))
 
     @cached_property
     def identity(self) -> bytes:
@@ -152,10 +149,10 @@ class EnsembleFolder(ComparedByFields):
         path = self.path / kind / part.name
         table = _read(path)
         if table.schema.metadata.get(b"plan") != self.identity:
-            raise ValueError(one_line(f"{path} belongs to another ensemble than {self.path / PLAN}; {_REMEDY}"))
+            raise ValueError(one_line(f"{path} belongs to another ensemble than {self.path / PLAN_FILE}; {_PLAN_REMEDY}"))
         if not np.array_equal(np.unique(table["member"].to_numpy()), part.members):
             raise ValueError(
-                one_line(f"{path} holds other members than {part.first} to {part.last - 1}, so it was renamed; {_REMEDY}")
+                one_line(f"{path} holds other members than {part.first} to {part.last - 1}, so it was renamed; {_PLAN_REMEDY}")
             )
         return table
 
@@ -185,7 +182,7 @@ def _apart(value: Any) -> object:
     return value.__qualname__ if hasattr(value, "__qualname__") else value.__reduce_ex__(2)
 
 
-_REMEDY = "delete it, and simulate_to runs its members anew"
+_PLAN_REMEDY = "delete it, and simulate_to runs its members anew"
 
 
 def _write(path: Path, columns: Mapping[str, Any], units: Mapping[str, str], metadata: Mapping[str, str | bytes]) -> None:
@@ -221,9 +218,9 @@ def _read(path: Path) -> pyarrow.Table:
         table = read_columns(path)
         sound = (table.schema.metadata or {}).get(b"digest") == _digest(table)
     except (ValueError, pyarrow.ArrowException) as error:
-        raise ValueError(f"{error}; {_REMEDY}") from None
+        raise ValueError(f"{error}; {_PLAN_REMEDY}") from None
     if not sound:
-        raise ValueError(one_line(f"{path} is damaged: its values are not those of its digest; {_REMEDY}"))
+        raise ValueError(one_line(f"{path} is damaged: its values are not those of its digest; {_PLAN_REMEDY}"))
     return table
 
 

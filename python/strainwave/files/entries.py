@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import re
 import reprlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import hypot
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 from strainwave import arguments
+from strainwave.files.described import parameters, parts
 from strainwave.files.units import check, check as check_unit, convert
 from strainwave.messages import quoted, shortened
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
 
 NOT_GIVEN = "not given"
-OPPOSITE = "of the log = -"  # in the source of a motor whose effort a log counts in the other sense
+OPPOSITE_SENSE = "of the log = -"  # in the source of a motor whose effort a log counts in the other sense
 
 
 @dataclass(frozen=True)
@@ -110,8 +111,8 @@ def check_line(name: str, text: str) -> None:
 Figure = float | str | Quantity
 MAX_FIGURE_LETTERS = 200  # characters of a figure: its pattern takes quadratic time
 
-_RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
-_WRITTEN = re.compile(
+_RAISED_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
+_WRITTEN_FIGURE = re.compile(
     r"(?P<number>[+-]?[0-9]+(?:[.,][0-9]+)?)(?:[eE](?P<exponent>[+-]?[0-9]{1,6}))?"
     r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?[0-9]{1,6})|(?P<raised>⁻?[⁰¹²³⁴-⁹]{1,3})))?"
     r"\s*(?P<unit>.*)"
@@ -138,28 +139,28 @@ def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
     31000.0
     """
     if isinstance(given, Quantity):
-        found = given
+        quantity = given
     elif isinstance(given, str):
-        found = _read(name, given, unit, source)
+        quantity = _read(name, given, unit, source)
     else:
-        found = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
+        quantity = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
     try:
-        found.to(unit)
+        quantity.to(unit)
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
-    return found
+    return quantity
 
 
 def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     if len(text) > MAX_FIGURE_LETTERS:
         raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_FIGURE_LETTERS}")
-    written = _WRITTEN.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
+    written = _WRITTEN_FIGURE.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
     if written is None:
         raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
     number = written["number"]
     if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", number):
         raise ValueError(f"{name} = {quoted(text)}: the comma may separate thousands or decimals; write a point, or none")
-    power = (written["raised"] or written["power"] or "0").translate(_RAISED)
+    power = (written["raised"] or written["power"] or "0").translate(_RAISED_DIGITS)
     value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
     if not written["unit"] and unit != "1":
         raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
@@ -222,7 +223,7 @@ def checked(form: Form, content: Mapping[str, Any]) -> dict[str, Any]:
     return plain
 
 
-_WANTED = {
+_WANTED_TYPES = {
     "dict_type": "a table",
     "finite_number": "finite",
     "float_type": "a number",
@@ -235,31 +236,76 @@ _WANTED = {
 
 def _explained(fault: ErrorDetails, form: Form) -> str:
     """Return the error of pydantic in the words of the file: key, value, what is allowed."""
-    kind, given = fault["type"], fault["input"]
+    kind, content = fault["type"], fault["input"]
     key, *inner = fault["loc"]
     attribute = next((name for name in inner if isinstance(name, str)), "")
     where = str(key) + "".join(f"[{index}]" for index in inner if isinstance(index, int))
     if kind == "extra_forbidden" and not attribute:
         return f"{key}: not a {form.noun}; it has {', '.join(form.examples)}"
     if kind == "too_long":
-        return f"{where} has {len(given)} elements; at most {MAX_ELEMENTS} are read"
+        return f"{where} has {len(content)} elements; at most {MAX_ELEMENTS} are read"
     hint = f"write {form.examples[str(key)]}"
     if kind == "extra_forbidden":
         return f"{where}: an entry has no {attribute}; {hint}"
-    number = given.get("value") if isinstance(given, dict) else given
+    number = content.get("value") if isinstance(content, dict) else content
     if kind in ("missing", "model_type") and type(number) in (int, float):
         hint = hint.replace("value = …", f"value = {number}")
     if kind == "missing":
         return f"{where} has no {attribute}; {hint}" if attribute else f"{where} is missing; {hint}"
     what = f"{where}.{attribute}".removesuffix(".value").removesuffix(".")
-    return f"{what} = {reprlib.repr(given)} must be {_WANTED[kind]}; {hint}"
+    return f"{what} = {reprlib.repr(content)} must be {_WANTED_TYPES[kind]}; {hint}"
 
 
 def inline(value: Any, unit: str, entry: Entry) -> Any:
     """A number, or several of one entry, as files write it."""
     import tomlkit
 
-    known = {key: known for key, known in dataclasses.asdict(entry).items() if known is not None}
+    stated = {key: member for key, member in dataclasses.asdict(entry).items() if member is not None}
     table = tomlkit.inline_table()
-    table.update({"value": value, "unit": unit} | known)
+    table.update({"value": value, "unit": unit} | stated)
     return table
+
+
+# ---- Origins ---------------------------------------------------------------------------------------------------------
+
+
+IDENTIFIED_SOURCE = "identified"  # begins the source of a number that a measurement determines, alone or in combination
+ORIGIN_HEADINGS = {
+    True: "identified, with one standard deviation:",
+    False: "not identified, of the set before or assumed, with the spread or standard deviation that its source states:",
+}
+
+
+def origin_lines(models: Mapping[str, Any], sources: Mapping[str, Entry]) -> list[str]:
+    """Return a line for each number of models by their names, those that were identified first; empty if none was.
+
+    >>> import strainwave as sw
+    >>> law = sw.friction.Coulomb(coulomb=0.05, breakaway=0.05)
+    >>> sources = {"law.coulomb": Entry("identified from a.csv", uncertainty=3e-4), "law.breakaway": Entry("maker", spread=0.3)}
+    >>> print("\\n".join(origin_lines({"law": law}, sources)))
+    identified, with one standard deviation:
+      law.coulomb = 0.05 ± 0.0003 N.m, identified from a.csv
+    not identified, of the set before or assumed, with the spread or standard deviation that its source states:
+      law.breakaway = 0.05 ± 0.015 N.m
+    """
+    groups: dict[bool, list[str]] = {True: [], False: []}
+    for path, value, unit in (number for name, model in models.items() for number in _numbers(name, model)):
+        entry = sources.get(path, Entry(NOT_GIVEN))
+        if entry.source != NOT_GIVEN:
+            identified, sigma = entry.source.startswith(IDENTIFIED_SOURCE), entry.sigma(value)
+            within = "" if sigma is None else f" ± {sigma:.2g}"
+            line = f"  {path} = {value:.6g}{within} {unit.removesuffix('1')}".rstrip()
+            is_said = identified or OPPOSITE_SENSE in entry.source
+            groups[identified].append(f"{line}, {entry.source}" if is_said else line)
+    return [line for each, lines in groups.items() for line in (ORIGIN_HEADINGS[each], *lines) if lines] if groups[True] else []
+
+
+def _numbers(path: str, model: Any) -> Iterator[tuple[str, float, str]]:
+    """Yield path, value and unit of every number of a model and its parts."""
+    for name, kind, unit in parameters(model):
+        if kind == "sequence":
+            yield from ((f"{path}.{name}[{i}]", value, unit) for i, value in enumerate(getattr(model, name)))
+        elif kind != "choice":
+            yield f"{path}.{name}", getattr(model, name), unit
+    for part in parts(model):
+        yield from _numbers(f"{path}.{part.name}", getattr(model, part.name))

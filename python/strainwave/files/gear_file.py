@@ -16,17 +16,7 @@ from typing import Annotated, Any, NamedTuple, Protocol
 
 from strainwave import Drive, Gear
 from strainwave.files.budget import MAX_DEPTH, RefusedFile, read_regular
-from strainwave.files.described import (
-    ParameterField,
-    PartField,
-    all_paths,
-    default_of,
-    optional,
-    origin_lines,
-    own_paths,
-    parameters,
-    parts,
-)
+from strainwave.files.described import ParameterField, PartField, all_paths, default_of, optional, own_paths, parameters, parts
 from strainwave.files.entries import (
     MAX_ELEMENTS,
     NOT_GIVEN,
@@ -37,6 +27,7 @@ from strainwave.files.entries import (
     elements,
     entry_schema,
     inline,
+    origin_lines,
     schema,
 )
 from strainwave.files.identified_tables import (
@@ -69,7 +60,7 @@ class Contents(Protocol):
 
 
 MAX_TOML_BYTES = 2**21  # of a gear or mapping file: a covariance of 200 parameters takes half of it
-_TEXTS = ("name", "maker", "note")
+_TEXT_KEYS = ("name", "maker", "note")
 _PART_OF_KEY = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|(?<![\w-])[\w-]++)[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?:{_PART_OF_KEY}\.[ \t]*+){{{MAX_DEPTH}}}")
 
@@ -84,7 +75,7 @@ def read(content: Mapping[str, Any]) -> dict[str, Any]:
         covariance = None if content.get("covariance") is None else read_covariance(content["covariance"])
     with at("[[validation]]"):
         validation = read_validation(content.get("validation", ()))
-    texts = {key: content[key] for key in _TEXTS if key in content}
+    texts = {key: content[key] for key in _TEXT_KEYS if key in content}
     return {"sources": sources, "ratings": ratings, "covariance": covariance, "validation": validation, **texts, **models}
 
 
@@ -305,9 +296,9 @@ def at(place: str) -> Iterator[None]:
 @cache
 def _head_form() -> Form:
     """The texts and tables of a file."""
-    keys: dict[str, Any] = dict.fromkeys(_TEXTS, (str, "")) | {"name": (str, ...), "ratings": (dict[str, Any], {})}
+    keys: dict[str, Any] = dict.fromkeys(_TEXT_KEYS, (str, "")) | {"name": (str, ...), "ratings": (dict[str, Any], {})}
     keys |= {"covariance": (dict[str, Any] | None, None), "validation": (list[dict[str, Any]], [])}
-    examples = {key: f'{key} = "…"' for key in _TEXTS} | {"ratings": "[ratings]"}
+    examples = {key: f'{key} = "…"' for key in _TEXT_KEYS} | {"ratings": "[ratings]"}
     examples |= {"covariance": "[covariance]", "validation": "[[validation]]"}
     for table in _tables():
         keys[table.name] = (dict[str, Any], ... if table.required else {})
@@ -365,9 +356,9 @@ def text(gear_set: Contents) -> str:
     document = tomlkit.document()
     for line in origins(gear_set):
         document.add(tomlkit.comment(line))
-    for key in _TEXTS:
-        if given := getattr(gear_set, key):
-            document.add(key, given)
+    for key in _TEXT_KEYS:
+        if written := getattr(gear_set, key):
+            document.add(key, written)
     for table, model in _filled(gear_set):
         if not _is_left_out(table, model, gear_set.sources):
             document.add(table.name, _written(table, model, gear_set.sources))

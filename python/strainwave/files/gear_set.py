@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Kind = TypeVar("Kind", bound=Entry)
-_PARTS = [field["name"] for field in Drive.fields]
+_DRIVE_PARTS = [field["name"] for field in Drive.fields]
 
 CATALOGUE_FOLDER = Path(__file__).parents[1] / "catalogue"  # of the package
-FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
+CATALOGUE_FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
 
 
 MAX_LOADED_SETS = 100  # the last ones
@@ -111,7 +111,10 @@ class GearSet(Pictured):
     validation: tuple[Validation, ...] = field(default=(), repr=False)
 
     def __post_init__(self) -> None:
-        _check_texts(self.name, self.maker, self.note)
+        check_line("name", self.name)
+        if arguments.text("maker", self.maker):
+            check_line("maker", self.maker)
+        arguments.text("note", self.note)
         _drive(vars(self))  # refuses what is no model of its family
         arguments.mapping("sources", self.sources, '{"gear.damping": Entry("assumed")}')
         arguments.mapping("ratings", self.ratings, '{"peak_torque": Quantity(…)}')
@@ -287,9 +290,9 @@ class GearSet(Pictured):
         >>> whole.sources["motor.resistance"].source, whole.drive.load.inertia
         ('data sheet', 2.0)
         """
-        given = (motor, control, load, sensors, thermal, meter)
+        models = (motor, control, load, sensors, thermal, meter)
         names = ("motor", "control", "load", "sensors", "thermal", "meter")
-        added = {name: part for name, part in zip(names, given, strict=True) if part is not None}
+        added = {name: part for name, part in zip(names, models, strict=True) if part is not None}
         old = tuple(f"{name}." for name in added)
         kept = {path: entry for path, entry in self.sources.items() if not path.startswith(old)}
         _drive({"gear": self.gear} | added)  # refuses what is no model of its family
@@ -319,13 +322,13 @@ class GearSet(Pictured):
 
     def _headline(self) -> str:
         maker = f", {self.maker}" if self.maker else ""
-        others = [name for name in _PARTS if name != "gear" and getattr(self, name) is not None]
+        others = [name for name in _DRIVE_PARTS if name != "gear" and getattr(self, name) is not None]
         parts = f", with {in_a_sentence(others)}" if others else ""
         return f"{self.name}{maker}{parts}: {self.gear._headline()}"
 
     def _rows(self) -> Iterator[Row]:
         idle = set(gear_file.idle(self))
-        for name in _PARTS:
+        for name in _DRIVE_PARTS:
             if (model := getattr(self, name)) is not None:
                 for row in model._rows():
                     path = f"{name}.{row.name}"
@@ -361,7 +364,7 @@ def catalogue(of: str = "gears") -> list[str]:
     >>> catalogue("drives")[:3]
     ['position-drive', 'position-drive-full-friction', 'position-drive-printed']
     """
-    return sorted(file.stem for file in FOLDERS[arguments.one_of("of", of, FOLDERS)].glob("*.toml"))
+    return sorted(file.stem for file in CATALOGUE_FOLDERS[arguments.one_of("of", of, CATALOGUE_FOLDERS)].glob("*.toml"))
 
 
 def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
@@ -401,7 +404,7 @@ def load(name_or_path: str | Path) -> Any:
     """
     gear_set = GearSet.read(name_or_path)
     # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
-    if gear_set.ratings and _file(name_or_path).parent not in FOLDERS.values():
+    if gear_set.ratings and _file(name_or_path).parent not in CATALOGUE_FOLDERS.values():
         _LOADED_SETS.pop(gear_set.gear, None)
         _LOADED_SETS[gear_set.gear] = gear_set
         if len(_LOADED_SETS) > MAX_LOADED_SETS:
@@ -459,14 +462,14 @@ def save(model: GearSet | Gear | Drive | FittedModel, path: str | Path, **naming
         )
     gear_set = model if isinstance(model, GearSet) else GearSet.of(model, **naming)
     if gear_set is model and naming:
-        name, given = min(naming.items())
-        raise TypeError(f"{name} = {shortened(given)}: a set has its own; change it by replace before it is saved")
+        name, value = min(naming.items())
+        raise TypeError(f"{name} = {shortened(value)}: a set has its own; change it by replace before it is saved")
     gear_set.save(path)
 
 
 def _paths(models: Mapping[str, Any]) -> Iterator[str]:
     """Path of every number of the parts of a drive."""
-    for name in _PARTS:
+    for name in _DRIVE_PARTS:
         if models.get(name) is not None:
             yield from all_paths(name, models[name])
 
@@ -524,16 +527,9 @@ def _of_sheet(sheet: datasheet.DatasheetGear) -> GearSet:
 
 def _drive(models: Mapping[str, Any]) -> Drive:
     """The drive of these models, with the default for each that is None."""
-    rest = {name: models[name] for name in _PARTS if name == "gear" or models.get(name) is not None}
+    rest = {name: models[name] for name in _DRIVE_PARTS if name == "gear" or models.get(name) is not None}
     # Every controller can act on a brushless motor; another motor is checked once it is known.
     return Drive(**{"motor": motors.BrushlessDC()} | rest)
-
-
-def _check_texts(name: str, maker: str, note: str) -> None:
-    check_line("name", name)
-    if arguments.text("maker", maker):
-        check_line("maker", maker)
-    arguments.text("note", note)
 
 
 def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]:
@@ -556,7 +552,7 @@ def _file(name_or_path: str | Path) -> Path:
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
-    files = {name: folder / f"{name}.toml" for of, folder in FOLDERS.items() for name in catalogue(of)}
+    files = {name: folder / f"{name}.toml" for of, folder in CATALOGUE_FOLDERS.items() for name in catalogue(of)}
     name = spelled(name_or_path)
     if name not in files and path.is_dir():
         return path / GEAR_FILE

@@ -29,8 +29,8 @@ MAX_ATTRIBUTE = 1000  # bytes of the name of a class
 MAX_SOFT_LINKS = 16  # one after the other
 MAX_DEFLATE = 1032  # times that a packed byte may expand
 CHECKSUM_BYTES = 4  # bytes that a filter may add to a chunk
-MISSING = Unreadable("a link that leads nowhere; the data are not in this file")
-CYCLE = Unreadable("a group or reference that contains itself")
+MISSING_VALUE = Unreadable("a link that leads nowhere; the data are not in this file")
+CYCLE_MARK = Unreadable("a group or reference that contains itself")
 
 
 def open_hdf5(path: str | Path) -> ArrayTable:
@@ -52,8 +52,8 @@ def hdf5_variables(path: Path, kind: str, budget: ReadBudget) -> Iterator[tuple[
     except ImportError:
         raise ImportError(f"{path.name}: HDF5, as of MAT 7.3, is read by h5py: pip install 'strainwave[formats]'") from None
     with read_by_others(path, kind), h5py.File(path, "r") as opened:
-        found = _Walk(opened, budget).root()
-    yield from found.items()
+        variables = _Walk(opened, budget).root()
+    yield from variables.items()
 
 
 class _Walk:
@@ -79,7 +79,7 @@ class _Walk:
         self.budget.take_node()
         address = h5py.h5o.get_info(node.id).addr
         if address in self.begun:
-            return CYCLE
+            return CYCLE_MARK
         if (address, depth) not in self.known:
             self.begun.add(address)
             read = self._group if isinstance(node, h5py.Group) else self._dataset
@@ -89,20 +89,20 @@ class _Walk:
 
     def _group(self, group: Any, depth: int) -> Any:
         """Return what a group contains: a list of structures if each name in it stands for as many values."""
-        found = self._members(group, depth)
-        lists = [each for each in found.values() if isinstance(each, list)]
-        if found and len(lists) == len(found) and len({len(each) for each in lists}) == 1:
-            return [dict(zip(found, each, strict=True)) for each in zip(*lists, strict=True)]
-        return found
+        members = self._members(group, depth)
+        lists = [each for each in members.values() if isinstance(each, list)]
+        if members and len(lists) == len(members) and len({len(each) for each in lists}) == 1:
+            return [dict(zip(members, each, strict=True)) for each in zip(*lists, strict=True)]
+        return members
 
     def _members(self, group: Any, depth: int) -> dict[str, Any]:
         """Return what a group contains, by names; what begins with # is MATLAB's own."""
-        found = {}
+        members = {}
         for name in group if depth else ():
             if not name.startswith("#"):
                 node = self._followed(group, name, MAX_SOFT_LINKS)
-                found[name] = MISSING if node is None else self.content(node, depth - 1)
-        return found
+                members[name] = MISSING_VALUE if node is None else self.content(node, depth - 1)
+        return members
 
     def _followed(self, group: Any, name: str, links: int) -> Any:
         """Return the node of this name in a group; None if a soft link leads nowhere."""
@@ -134,8 +134,8 @@ class _Walk:
             return "".join(map(chr, np.ravel(self._values(node))))
         if h5py.check_ref_dtype(node.dtype) is h5py.Reference:
             references = np.ravel(self._values(node))[:MAX_MATRIX_COLUMNS] if depth else ()
-            found = [self.content(self.opened[each], depth - 1) for each in references if each]
-            return CYCLE if found and all(each is CYCLE for each in found) else found
+            contents = [self.content(self.opened[each], depth - 1) for each in references if each]
+            return CYCLE_MARK if contents and all(each is CYCLE_MARK for each in contents) else contents
         shape = node.shape or ()
         is_series = len(shape) < 2 or (len(shape) == 2 and min(shape) <= MAX_MATRIX_COLUMNS)
         return self._values(node) if is_series and node.dtype.kind in "fiub" else []
@@ -204,5 +204,10 @@ def _class(node: Any) -> str:
     return value.decode("latin-1") if isinstance(value, bytes) else str(value)
 
 
-ABOUT = "series, matrices and lengths as in MAT files. They need h5py: `pip install 'strainwave[formats]'`."
-FORMAT: Format = Format((".h5", ".hdf5"), open_hdf5, "HDF5", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format(
+    (".h5", ".hdf5"),
+    open_hdf5,
+    "HDF5",
+    IN_THE_NAME,
+    about="series, matrices and lengths as in MAT files. They need h5py: `pip install 'strainwave[formats]'`.",
+)

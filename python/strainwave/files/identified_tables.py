@@ -153,8 +153,8 @@ def read_covariance(content: Mapping[str, Any]) -> Covariance:
     Raises:
         ValueError: what is wrong in it
     """
-    given = checked(_covariance_form(), content)
-    return Covariance(tuple(given["numbers"]), tuple(map(tuple, given["matrix"])))
+    covariance = checked(_covariance_form(), content)
+    return Covariance(tuple(covariance["numbers"]), tuple(map(tuple, covariance["matrix"])))
 
 
 def read_validation(content: Sequence[Mapping[str, Any]]) -> tuple[Validation, ...]:

@@ -43,14 +43,14 @@ def open_json(path: str | Path) -> ArrayTable:
         data = read_regular(path)
         budget = ReadBudget(len(data))
         budget.take_bytes(BYTES_OF_VALUE * sum(map(data.count, (b",", b"[", b"{"))), "its values")
-        found = _parsed(file, data.decode("utf-8-sig"))
-        if isinstance(found, Mapping):
-            rows = next((each for each in found.values() if _are_rows(each)), None)
+        parsed = _parsed(file, data.decode("utf-8-sig"))
+        if isinstance(parsed, Mapping):
+            rows = next((each for each in parsed.values() if _are_rows(each)), None)
         else:
-            rows = found if _are_rows(found) else None
+            rows = parsed if _are_rows(parsed) else None
         if rows is not None:
             return table_of(file, _of_rows(rows, budget), budget)
-        variables = found if isinstance(found, Mapping) else {"": found}
+        variables = parsed if isinstance(parsed, Mapping) else {"": parsed}
         return table_of(file, ((name, _numbers(each, name)) for name, each in variables.items()), budget)
     except (OSError, UnicodeError, RecursionError, RefusedFile) as error:
         raise ValueError(unreadable(path, error)) from None
@@ -136,7 +136,8 @@ def _numbers(value: Any, name: str) -> Any:
     """A list of numbers, or of lists of them, as an array; a table of names to such; what else there is as it stands."""
     if isinstance(value, Mapping):
         return {key: _numbers(each, f"{name}.{key}") for key, each in value.items()}
-    if isinstance(value, str) or (isinstance(value, list) and str in _types(value)):
+    inner = chain.from_iterable(each for each in value if isinstance(each, list)) if isinstance(value, list) else ()
+    if isinstance(value, str) or (isinstance(value, list) and str in {*map(type, value), *map(type, inner)}):
         return np.array([])
     try:
         return np.array(value, float)  # None becomes nan
@@ -146,11 +147,10 @@ def _numbers(value: Any, name: str) -> Any:
         return np.array([])
 
 
-def _types(values: list[Any]) -> set[type]:
-    """The types of values in a list, and in the lists in it."""
-    found = set(map(type, values))
-    return found | set(map(type, chain.from_iterable(each for each in values if isinstance(each, list))))
-
-
-ABOUT = 'series by their names, `{"t": […], "q": [[…], …]}`, or a row for each sample, in one list or one a line.'
-FORMAT: Format = Format((".json", ".jsonl"), open_json, "JSON", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format(
+    (".json", ".jsonl"),
+    open_json,
+    "JSON",
+    IN_THE_NAME,
+    about='series by their names, `{"t": […], "q": [[…], …]}`, or a row for each sample, in one list or one a line.',
+)

@@ -42,9 +42,9 @@ class ColumnSource(NamedTuple):
 def label_of(text: str) -> Label:
     """Split `speed [rad/s]` or `speed (rad/s)`. Round brackets around no unit are a part of the name."""
     square = re.search(r"\[([^\[\]]*)\]\Z", text)
-    found = square or re.search(r"\(((?:[^()]|\([^()]*\))*)\)\Z", text)
-    if found and (name := text[: found.start()].rstrip()) and (square or is_unit(found[1])):
-        return Label(text, name, found[1])
+    unit_match = square or re.search(r"\(((?:[^()]|\([^()]*\))*)\)\Z", text)
+    if unit_match and (name := text[: unit_match.start()].rstrip()) and (square or is_unit(unit_match[1])):
+        return Label(text, name, unit_match[1])
     return Label(text, text, None)
 
 
@@ -128,22 +128,22 @@ def places_of(labels: Sequence[Label], wanted: str) -> list[int]:
     >>> places_of([Label("t [s]", "t", "s"), Label("q", "q", None)], "q"), places_of([Label("t [s]", "t", "s")], "1")
     ([1], [0])
     """
-    found = [i for i, label in enumerate(labels) if label.text == wanted]
-    found = found or [i for i, label in enumerate(labels) if label.name == wanted]
-    if not found and (matrix := re.fullmatch(r"(.+):([1-9]\d{0,3})", wanted, re.ASCII)):
-        found = [i for i, label in enumerate(labels) if f"{matrix[1]}_{matrix[2]}" in (label.text, label.name)]
-    if not found and re.fullmatch(r"[1-9]\d{0,5}", wanted, re.ASCII) and int(wanted) <= len(labels):
+    places = [i for i, label in enumerate(labels) if label.text == wanted]
+    places = places or [i for i, label in enumerate(labels) if label.name == wanted]
+    if not places and (matrix := re.fullmatch(r"(.+):([1-9]\d{0,3})", wanted, re.ASCII)):
+        places = [i for i, label in enumerate(labels) if f"{matrix[1]}_{matrix[2]}" in (label.text, label.name)]
+    if not places and re.fullmatch(r"[1-9]\d{0,5}", wanted, re.ASCII) and int(wanted) <= len(labels):
         return [int(wanted) - 1]
-    return found
+    return places
 
 
 def _find(file: str, labels: Sequence[Label], wanted: str) -> int:
-    found = places_of(labels, wanted)
-    if len(found) > 1:
-        raise ValueError(f"{file} has {len(found)} columns named {quoted(wanted)}; names must differ")
-    if not found:
+    places = places_of(labels, wanted)
+    if len(places) > 1:
+        raise ValueError(f"{file} has {len(places)} columns named {quoted(wanted)}; names must differ")
+    if not places:
         raise ValueError(f"{file} has no column {quoted(wanted)}; it has {listed(label.name for label in labels)}")
-    return found[0]
+    return places[0]
 
 
 def _unit(file: str, label: Label, name: str, given: str | None) -> str:

@@ -73,9 +73,9 @@ def variables_of_version_5(data: bytes, budget: ReadBudget) -> Iterator[tuple[st
 
 def _unpacked(content: memoryview, budget: ReadBudget) -> memoryview:
     inflater = zlib.decompressobj()
-    found = inflater.decompress(content, budget.allowed_bytes + 1)
-    budget.take_bytes(len(found), "a packed variable")
-    return memoryview(found)
+    unpacked = inflater.decompress(content, budget.allowed_bytes + 1)
+    budget.take_bytes(len(unpacked), "a packed variable")
+    return memoryview(unpacked)
 
 
 def _elements(content: memoryview, order: str, is_padded: bool = True) -> Iterator[_Element]:
@@ -125,7 +125,8 @@ def _array(element: _Element, order: str, budget: ReadBudget, depth: int) -> tup
     values = [_array(part, order, budget, depth + 1)[1] for part in rest]
     if kind == CELL:
         return name, values
-    structures = [dict(zip(fields, each, strict=True)) for each in _grouped(values, len(fields))]
+    places = range(0, len(values), max(len(fields), 1))
+    structures = [dict(zip(fields, values[place : place + len(fields)], strict=True)) for place in places]
     return name, structures[0] if len(structures) == 1 else structures
 
 
@@ -136,10 +137,6 @@ def _fields(parts: Sequence[_Element], order: str) -> tuple[list[str], list[_Ele
     if length < 1:
         raise RefusedFile(f"has names of {length} letters; it is damaged")
     return [_text(names.content[place : place + length]) for place in range(0, len(names.content), length)], rest
-
-
-def _grouped(values: Sequence[Any], count: int) -> list[Sequence[Any]]:
-    return [values[place : place + count] for place in range(0, len(values), max(count, 1))]
 
 
 def _numbers(parts: Sequence[_Element], shape: Sequence[int], order: str) -> Any:
@@ -185,21 +182,26 @@ def _variables(path: Path, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
         with open_regular(path) as file:
             head = file.read(HEADER_BYTES)
         if head[VERSION_BYTES] in VERSION_7_3:
-            found = list(hdf5_variables(path, "MAT", budget))
+            variables = list(hdf5_variables(path, "MAT", budget))
         elif head[VERSION_BYTES] in VERSION_5:
-            found = list(variables_of_version_5(read_regular(path), budget))
+            variables = list(variables_of_version_5(read_regular(path), budget))
         elif 0 in head[:4]:
-            found = list(variables_of_version_4(read_regular(path), budget))
+            variables = list(variables_of_version_4(read_regular(path), budget))
         else:
             raise ValueError("no MAT file")
-    yield from ((name, value) for name, value in found if name and not name.startswith("__"))
+    yield from ((name, value) for name, value in variables if name and not name.startswith("__"))
 
 
-ABOUT = (
-    "version 4 to 7.3. A series is a variable or a field of a structure, as `data.joint2.q`. A matrix contains several, "
-    "`q_1`, `q_2` …. The most frequent length is read; an array or a cell of structures is a recording each, as "
-    "`bench.mat(2)`; of a Simulink scope, its signals by their labels. Only MATLAB can read its objects (timetable, "
-    "timeseries, Simulink data set): save their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: "
-    "`pip install 'strainwave[formats]'`."
+FORMAT: Format = Format(
+    (".mat",),
+    open_mat,
+    "MAT",
+    IN_THE_NAME,
+    about=(
+        "version 4 to 7.3. A series is a variable or a field of a structure, as `data.joint2.q`. A matrix contains several, "
+        "`q_1`, `q_2` …. The most frequent length is read; an array or a cell of structures is a recording each, as "
+        "`bench.mat(2)`; of a Simulink scope, its signals by their labels. Only MATLAB can read its objects (timetable, "
+        "timeseries, Simulink data set): save their values, as `s = struct('t', x.Time, 'q', x.Data)`. Version 7.3 needs h5py: "
+        "`pip install 'strainwave[formats]'`."
+    ),
 )
-FORMAT: Format = Format((".mat",), open_mat, "MAT", IN_THE_NAME, about=ABOUT)

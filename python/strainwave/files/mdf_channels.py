@@ -292,13 +292,13 @@ def records_of(
     budget.take_bytes(len(data), "sorting its records")
     starts = _starts(data, layouts, id_bytes, id_bytes_behind, budget)
     whole = data.tobytes()
-    found = {}
+    records = {}
     for number, layout in wanted.items():
         length, there = layout.length or 0, starts[number][: layout.records]
         _check_count(len(starts[number]), layout.records)
         content = np.frombuffer(b"".join(whole[start : start + length] for start in there), np.uint8)
-        found[number] = _split(content.reshape(len(there), length), layout)
-    return found
+        records[number] = _split(content.reshape(len(there), length), layout)
+    return records
 
 
 def _of_one(data: Bytes, number: int, layout: RecordLayout, id_bytes: int, id_bytes_behind: int) -> Records:

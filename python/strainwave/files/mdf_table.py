@@ -49,7 +49,7 @@ from strainwave.messages import one_line
 
 
 HEADER_BLOCK_PLACE = 64  # byte where the header block begins
-KINDS: dict[int, tuple[Any, bool | None]] = {  # data types: kind of number, and byte order where it is not that of the file
+KINDS_OF_3: dict[int, tuple[Any, bool | None]] = {  # by data type: kind of number, and byte order if not that of the file
     0: ("u", None), 1: ("i", None), 2: ("f", None), 3: ("f", None),
     9: ("u", True), 10: ("i", True), 11: ("f", True), 12: ("f", True),
     13: ("u", False), 14: ("i", False), 15: ("f", False), 16: ("f", False),
@@ -78,8 +78,10 @@ def channel_groups(data: Bytes, budget: ReadBudget) -> Iterator[ChannelGroup]:
         end = place + sum(layout.records * ((layout.length or 0) + ids) for layout in layouts.values())
         if end > len(data):
             raise RefusedFile(f"claims records up to byte {end}, but has {len(data)}; it is damaged or was not closed")
-        found = records_of(data[place:end], layouts, int(ids > 0), budget, int(ids == 2)) if layouts else {}
-        yield from (ChannelGroup(each, found[number], _master(each, found[number])) for number, each in channels.items())
+        records_by_number = records_of(data[place:end], layouts, int(ids > 0), budget, int(ids == 2)) if layouts else {}
+        for number, own in channels.items():
+            rows = records_by_number[number]
+            yield ChannelGroup(own, rows, next(((channel, rows) for channel in own if channel.is_master), None))
 
 
 def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: ReadBudget) -> Iterator[MdfChannel]:
@@ -90,19 +92,15 @@ def _channels(whole: memoryview, address: int, is_big_endian: bool, budget: Read
         start, bits, data_type = _unpack("3H", block, 186)
         (long_name,) = _unpack("I", block, 218) if len(block) >= 222 else (0,)
         (more_bytes,) = _unpack("H", block, 226) if len(block) >= 228 else (0,)
-        if data_type not in KINDS or dependency:
+        if data_type not in KINDS_OF_3 or dependency:
             continue
-        kind_of_number, order = KINDS[data_type]
+        kind_of_number, order = KINDS_OF_3[data_type]
         name = _text(_block(whole, long_name, b"TX")[4:]) if long_name else _text(block[26:58])
         budget.take_bytes(len(name), "the names of its channels")
         place = NumberField(kind_of_number, more_bytes + start // 8, start % 8, bits, is_big_endian if order is None else order)
         unit, convert = _conversion(_block(whole, conversion, b"CC"), budget) if conversion else ("", identity)
         if convert is not None:
             yield MdfChannel(name, unit, place, convert, is_master=kind == TIME_CHANNEL)
-
-
-def _master(channels: Sequence[MdfChannel], records: Records) -> tuple[MdfChannel, Records] | None:
-    return next(((channel, records) for channel in channels if channel.is_master), None)
 
 
 def _conversion(block: memoryview, budget: ReadBudget) -> tuple[str, Convert | RefusedChannel | None]:
@@ -167,7 +165,7 @@ def _text(block: memoryview) -> str:
 MAX_TEXT_BLOCK_BYTES = 2**16  # bytes of a name, a unit or a formula
 BYTES_OF_REFERENCE = 64  # that a reference of a conversion takes in memory
 
-NUMBER_KINDS: dict[int, tuple[Any, bool]] = {  # data types of numbers: kind, and whether the highest byte comes first
+KINDS_OF_4: dict[int, tuple[Any, bool]] = {  # data types of numbers: kind, and whether the highest byte comes first
     0: ("u", False), 1: ("u", True), 2: ("i", False), 3: ("i", True), 4: ("f", False), 5: ("f", True),
 }  # fmt: skip
 FIXED, MASTER, VIRTUAL_MASTER, VIRTUAL = 0, 2, 3, 6  # types of channels that contain numbers
@@ -265,16 +263,14 @@ class Mdf4File:
                     continue
             kind, sync, data_type, bit, byte, bits, flags, invalid = block.unpack("4B4I")
             is_virtual = kind in (VIRTUAL_MASTER, VIRTUAL)
-            if kind not in (FIXED, MASTER, VIRTUAL_MASTER, VIRTUAL) or data_type not in NUMBER_KINDS or flags & ALL_INVALID:
+            if kind not in (FIXED, MASTER, VIRTUAL_MASTER, VIRTUAL) or data_type not in KINDS_OF_4 or flags & ALL_INVALID:
                 continue
-            own_unit, convert = self._conversion(conversion, NUMBER_KINDS[data_type][0] != "f")
+            own_unit, convert = self._conversion(conversion, KINDS_OF_4[data_type][0] != "f")
             if convert is not None:
                 yield MdfChannel(
                     self._text(name),
                     self._text(unit) or own_unit,
-                    None
-                    if is_virtual
-                    else NumberField(NUMBER_KINDS[data_type][0], byte, bit, bits, NUMBER_KINDS[data_type][1]),
+                    None if is_virtual else NumberField(KINDS_OF_4[data_type][0], byte, bit, bits, KINDS_OF_4[data_type][1]),
                     convert,
                     is_master=kind in (MASTER, VIRTUAL_MASTER),
                     is_time=sync in TIME_MASTERS,
@@ -383,8 +379,8 @@ class Mdf4File:
         self.budget.take_bytes(len(block.content), "its texts")
         text = bytes(block.content).partition(b"\0")[0].decode("utf-8", "replace")
         if block.kind == b"##MD":
-            found = re.search(r"<TX[^<>]*>([^<>]*)</TX>", text)
-            text = unescape(found[1]) if found else ""
+            in_xml = re.search(r"<TX[^<>]*>([^<>]*)</TX>", text)
+            text = unescape(in_xml[1]) if in_xml else ""
         return text.strip()
 
     def _new_block(self, address: int, kind: bytes, depth: int = 0) -> _Block:
@@ -487,16 +483,21 @@ def _time(group: ChannelGroup, budget: ReadBudget) -> Array:
 
 def _unique(name: str, group: int, taken: Collection[str], tries: Counter[tuple[str, int]]) -> str:
     """Return the name, with the number of its group behind it where the file has it already; `tries` counts these."""
-    found = name
-    while found in taken:
+    unique = name
+    while unique in taken:
         count = tries[name, group]
         tries[name, group] += 1
-        found = f"{name}.{group}.{count}" if count else f"{name}.{group}"
-    return found
+        unique = f"{name}.{group}.{count}" if count else f"{name}.{group}"
+    return unique
 
 
-ABOUT = (
-    "version 2 to 4: the numeric channels; invalid values become nan. Linear, rational and table conversions are applied. A "
-    "formula is never evaluated: its channel is left out and named."
+FORMAT: Format = Format(
+    (".mf4", ".mdf"),
+    open_mdf,
+    "MDF",
+    "of the channel",
+    about=(
+        "version 2 to 4: the numeric channels; invalid values become nan. Linear, rational and table conversions are applied. "
+        "A formula is never evaluated: its channel is left out and named."
+    ),
 )
-FORMAT: Format = Format((".mf4", ".mdf"), open_mdf, "MDF", "of the channel", about=ABOUT)

@@ -17,9 +17,9 @@ from strainwave.files.labels import read_by_others
 from strainwave.files.table_format import Format
 from strainwave.messages import one_line
 
-ZIP = b"PK"  # first letters of a file of several arrays
-PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; zipfile unpacks others without a bound
-OBJECTS = Unreadable("an array of Python objects, which may run any program as it is loaded; save its numbers")
+ZIP_BEGINNING = b"PK"  # first letters of a file of several arrays
+PACKED_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # as NumPy writes; zipfile unpacks others without a bound
+OBJECT_KINDS = Unreadable("an array of Python objects, which may run any program as it is loaded; save its numbers")
 
 
 def open_numpy(path: str | Path) -> ArrayTable:
@@ -35,7 +35,7 @@ def open_numpy(path: str | Path) -> ArrayTable:
     """
     with read_by_others(path, "NumPy"), open_regular(path) as file:
         budget = budget_of(path)
-        is_zip = file.read(len(ZIP)) == ZIP
+        is_zip = file.read(len(ZIP_BEGINNING)) == ZIP_BEGINNING
         file.seek(0)
         variables = list(_of_zip(file, budget) if is_zip else _of_array("", file, budget.file_bytes, budget))
     return table_of(one_line(str(path)), variables, budget)
@@ -46,7 +46,7 @@ def _of_zip(file: BinaryIO, budget: ReadBudget) -> Iterator[tuple[str, Any]]:
         for member in members.infolist():
             budget.take_node()
             if member.filename.endswith(".npy"):
-                if member.compress_type not in PACKED:
+                if member.compress_type not in PACKED_METHODS:
                     raise RefusedFile(f"{member.filename} is packed in another way than NumPy does")
                 with members.open(member) as opened:
                     yield from _of_array(member.filename.removesuffix(".npy"), opened, member.file_size, budget)
@@ -58,7 +58,7 @@ def _of_array(name: str, file: Any, file_bytes: int, budget: ReadBudget) -> Iter
     read_header = numpy_format.read_array_header_1_0 if version == (1, 0) else numpy_format.read_array_header_2_0
     shape, is_transposed, kind = read_header(file)
     if kind.hasobject:
-        yield name, OBJECTS
+        yield name, OBJECT_KINDS
         return
     size = prod(shape)
     if min(shape, default=0) < 0 or size * kind.itemsize > file_bytes:
@@ -76,5 +76,10 @@ def _whole(file: BinaryIO, count: int) -> bytes:
     return data
 
 
-ABOUT = "series, matrices and lengths as in MAT files. Arrays of Python objects are not loaded."
-FORMAT: Format = Format((".npy", ".npz"), open_numpy, "NumPy", IN_THE_NAME, about=ABOUT)
+FORMAT: Format = Format(
+    (".npy", ".npz"),
+    open_numpy,
+    "NumPy",
+    IN_THE_NAME,
+    about="series, matrices and lengths as in MAT files. Arrays of Python objects are not loaded.",
+)

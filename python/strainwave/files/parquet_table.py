@@ -84,12 +84,12 @@ class _ThriftReader:
 
     def structure(self, depth: int = 0) -> dict[int, Any]:
         """Return the fields of a structure by their numbers."""
-        found: dict[int, Any] = {}
+        fields: dict[int, Any] = {}
         number = 0
         while (head := self._byte()) != STOP:
             number = number + (head >> 4) if head >> 4 else self._integer()
-            found[number] = self._value(head & 15, depth)
-        return found
+            fields[number] = self._value(head & 15, depth)
+        return fields
 
     def _value(self, kind: int, depth: int) -> Any:
         if depth > MAX_DEPTH:
@@ -120,11 +120,11 @@ class _ThriftReader:
         return self.data[self.place - 1]
 
     def _unsigned(self) -> int:
-        found = shift = 0
+        number = shift = 0
         while (byte := self._byte()) & 0x80:
-            found |= (byte & 0x7F) << shift
+            number |= (byte & 0x7F) << shift
             shift += 7
-        return found | byte << shift
+        return number | byte << shift
 
     def _integer(self) -> int:
         unsigned = self._unsigned()

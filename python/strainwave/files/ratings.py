@@ -112,8 +112,8 @@ peak torque, CSG-20-100)
     for recording in recordings:
         if not isinstance(recording, Recording):
             raise TypeError(f"recordings must hold a Recording each, not {shortened(recording)}")
-    found = (_check(name, limit, each) for each in recordings for name, limit in gear_set.ratings.items())
-    return [check for check in found if check is not None]
+    checks = (_check(name, limit, each) for each in recordings for name, limit in gear_set.ratings.items())
+    return [check for check in checks if check is not None]
 
 
 def drive_of(model: object) -> Drive:

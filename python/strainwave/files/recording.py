@@ -77,11 +77,13 @@ class Recording(Pictured):
         if arguments.text("title", title) and not title.isprintable():
             raise ValueError(f"title {shortened(title)} must be one line of text")
         frozen = {name: _frozen(name, values) for name, values in columns.items()}
-        _check_lengths(frozen)
-        known = {name: _known(name, units[name]) for name in columns}
-        if fault := _first_fault(frozen, known):
+        (first, length), *others = ((name, len(values)) for name, values in frozen.items())
+        if other := next((each for each in others if each[1] != length), None):
+            raise ValueError(f"column {quoted(other[0])} has {other[1]} samples, column {quoted(first)} has {length}")
+        standard_units = {name: _known(name, units[name]) for name in columns}
+        if fault := _first_fault(frozen, standard_units):
             raise ValueError(f"column {quoted(fault.column)} row {fault.row}: {fault.reason}")
-        self._hold(frozen, known, title)
+        self._hold(frozen, standard_units, title)
 
     def _hold(self, columns: Mapping[str, Array], units: Mapping[str, str], title: str) -> None:
         """Keeps what is known to be in order: read-only series, units in their standard spelling."""
@@ -252,12 +254,12 @@ class Recording(Pictured):
         import pyarrow
         from pyarrow.csv import write_csv
 
-        from strainwave.files.text_table import TITLE
+        from strainwave.files.text_table import TITLE_LINE
 
         table = pyarrow.table({f"{name} [{unit}]": self[name] for name, unit in self.units.items()})
         with replacing(path) as file:
             if self.title:
-                file.write(f"{TITLE}{self.title}\n".encode())
+                file.write(f"{TITLE_LINE}{self.title}\n".encode())
             write_csv(table, file)
 
     def to_frame(self) -> pandas.DataFrame:
@@ -492,13 +494,6 @@ def _known(name: str, unit: str) -> str:
         return check_unit(unit)
     except ValueError as error:
         raise ValueError(f"column {quoted(name)}: {error}") from None
-
-
-def _check_lengths(columns: Mapping[str, Array]) -> None:
-    (first, wanted), *others = ((name, len(values)) for name, values in columns.items())
-    for name, length in others:
-        if length != wanted:
-            raise ValueError(f"column {quoted(name)} has {length} samples, column {quoted(first)} has {wanted}")
 
 
 @np.errstate(all="ignore")

@@ -28,7 +28,7 @@ from strainwave.files.budget import RefusedFile, open_regular
 from strainwave.files.labels import sources_of, unreadable
 from strainwave.files.mdf_table import MDF_BEGINNINGS, open_mdf
 from strainwave.files.table_format import Format, OpenTable
-from strainwave.files.text_layout import NUMBER
+from strainwave.files.text_layout import NUMBER_CELL
 from strainwave.files.text_table import open_text
 from strainwave.messages import one_line, quoted
 
@@ -45,7 +45,7 @@ def _open_dat(path: str | Path) -> OpenTable:
     return open_mdf(path) if begin.startswith(MDF_BEGINNINGS) else open_text(path)
 
 
-LISTED = (
+LISTED_FORMATS = (
     text_table.FORMAT,
     parquet_table.FORMAT,
     Format((".dat",), _open_dat, "Text or MDF", "as in files of that format"),
@@ -56,10 +56,10 @@ LISTED = (
     mdf_table.FORMAT,
     bag_table.FORMAT,
 )
-FORMATS = {suffix: each.open for each in LISTED for suffix in each.suffixes}
+FORMATS = {suffix: each.open for each in LISTED_FORMATS for suffix in each.suffixes}
 BEGIN_BYTES = 4096  # of a file with an unknown suffix, by which it is taken for a table of numbers
 MIN_ROWS = 5  # of numbers in them
-INSTEAD = {  # what to do with other files that people have
+OTHER_SUFFIXES = {  # what to do with other files that people have
     ".pkl": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
     ".pickle": "a pickle may run any program as it is read: save it as .npz, .csv or .parquet",
     ".xlsx": "save the sheet as .csv",
@@ -72,7 +72,7 @@ INSTEAD = {  # what to do with other files that people have
 
 def is_table_of_numbers(path: str | Path) -> bool:
     """True if a file whose suffix is not known begins with several rows of as many numbers."""
-    if Path(path).suffix.lower() in {*FORMATS, *INSTEAD}:
+    if Path(path).suffix.lower() in {*FORMATS, *OTHER_SUFFIXES}:
         return False
     try:
         with open_regular(path) as file:
@@ -81,7 +81,7 @@ def is_table_of_numbers(path: str | Path) -> bool:
         return False
     cells = [re.split(r"[\s,;]+", row.strip()) for row in rows]
     is_even = len(rows) >= MIN_ROWS and len({len(row) for row in cells}) == 1
-    return is_even and all(NUMBER.fullmatch(cell) for row in cells for cell in row)
+    return is_even and all(NUMBER_CELL.fullmatch(cell) for row in cells for cell in row)
 
 
 class Table(NamedTuple):
@@ -112,7 +112,7 @@ def open_table(path: str | Path) -> OpenTable:
             raise ValueError(one_line(f"{path} is a folder without a file of measurements; they end in {known}"))
         if not suffix and not Path(path).exists():
             raise ValueError(one_line(f"{path} does not exist; check its name"))
-        what = INSTEAD.get(suffix, f"use {known}")
+        what = OTHER_SUFFIXES.get(suffix, f"use {known}")
         raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; {what}"))
     return FORMATS[suffix](path)
 

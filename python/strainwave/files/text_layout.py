@@ -1,4 +1,4 @@
-"""The layout of a text: separator, header, units, and signals with a time each."""
+"""Layouts of texts: lines above a header, scope exports, a row for each channel, lists in cells, pairs of name and number."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from strainwave.messages import listed
 
 Array = NDArray[np.float64]
 
-NUMBER = re.compile(
+NUMBER_CELL = re.compile(
     r"[+-]?(?=[.,]?\d)\d*+([.,]?)\d*+(?:[eE][+-]?\d++)?", re.ASCII
 )  # sign, digits, one decimal mark (group 1), exponent
-CLOCK = re.compile(  # a time of day, or with a date as controllers and loggers write it
+CLOCK_CELL = re.compile(  # a time of day, or with a date as controllers and loggers write it
     r"(?:(?P<day>\d{4}[-/]\d\d[-/]\d\d|\d\d\.\d\d\.\d{4})[ T])?(?P<h>\d\d?):(?P<m>\d\d):(?P<s>\d\d(?:[.,]\d{1,9})?)", re.ASCII
 )
 SECONDS_PER_DAY = 86400.0  # s
@@ -35,7 +35,7 @@ MIN_SAMPLES = 200  # cells of each of its rows
 MIN_LONGER = 5  # times, by which its rows are longer than it has rows
 _NO_UNIT = ("", "-", "1", "(None)", "None")
 _NO_NUMBER = ("NA", "N/A")  # no newton times or per ampere, but what programs write for no value
-_LIST = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\[\]()"\n]*)[\])]{1,2}["']?""")
+_LIST_CELL = re.compile(rb"""["']?(?:array\((?:'d', *)?)?[\[(](\s*(?:[-+.\d']|nan)[^\[\]()"\n]*)[\])]{1,2}["']?""")
 
 
 def lines_above(data: bytes) -> int:
@@ -57,15 +57,11 @@ def lines_above(data: bytes) -> int:
             below = [each for each in cells[place + 1 : place + 3] if len(each) == usual]
             if (
                 len(names) == usual
-                and all(map(_is_name, names))
-                and any(NUMBER.fullmatch(each[0]) or NUMBER.fullmatch(each[1]) for each in below)
+                and all(cell and not NUMBER_CELL.fullmatch(cell) and cell.casefold() not in NOT_FINITE for cell in names)
+                and any(NUMBER_CELL.fullmatch(each[0]) or NUMBER_CELL.fullmatch(each[1]) for each in below)
             ):
                 return lines[place][0]
     return 0
-
-
-def _is_name(cell: str) -> bool:
-    return bool(cell) and not NUMBER.fullmatch(cell) and cell.casefold() not in NOT_FINITE
 
 
 class ScopeHeader(NamedTuple):
@@ -90,7 +86,7 @@ def scope_header(data: bytes) -> ScopeHeader | None:
     for mark in "\t;,":
         rows = [[cell.strip(' "') for cell in text.split(mark)] for _, text in lines]
         keys = [row[0].casefold() for row in rows]
-        first = next((place for place, row in enumerate(rows) if len(row) > 1 and NUMBER.fullmatch(row[0])), None)
+        first = next((place for place, row in enumerate(rows) if len(row) > 1 and NUMBER_CELL.fullmatch(row[0])), None)
         if first is None or "name" not in keys[:first]:
             continue
         at = first - 1 - keys[:first][::-1].index("name")
@@ -105,16 +101,16 @@ def _labels_of_scope(described: dict[str, list[str]], count: int) -> list[Label]
     names, units = described["name"], described.get("unit", [])
     each_timed = "name" in [cell.casefold() for cell in names[2::2]] or (count > 2 and len(names) == count and not names[2])
     unit_of_time = "ms" if "sampletime[ms]" in described else None
-    found = []
+    labels = []
     for place in range(count):
         if place == 0 or (each_timed and place % 2 == 0):
-            found.append(Label(f"time [{unit_of_time}]" if unit_of_time else "time", "time", unit_of_time))
+            labels.append(Label(f"time [{unit_of_time}]" if unit_of_time else "time", "time", unit_of_time))
             continue
         name = names[place] if place < len(names) else ""
         unit = re.sub(r"\s*\([^()]*\)$", "", units[place]) if place < len(units) else ""
         stated = unit not in _NO_UNIT and (is_unit(unit) or unit.strip() in "%‰")
-        found.append(Label(f"{name} [{unit}]", name, unit) if stated else Label(name, name, None))
-    return found
+        labels.append(Label(f"{name} [{unit}]", name, unit) if stated else Label(name, name, None))
+    return labels
 
 
 def sideways(data: bytes) -> tuple[list[str], Array] | None:
@@ -150,7 +146,7 @@ def sideways(data: bytes) -> tuple[list[str], Array] | None:
 
 def _is_numeric(cell: bytes) -> bool:
     text = cell.decode()
-    return bool(NUMBER.fullmatch(text)) or text.casefold() in NOT_FINITE
+    return bool(NUMBER_CELL.fullmatch(text)) or text.casefold() in NOT_FINITE
 
 
 def with_units(labels: Sequence[Label], cells: Sequence[str]) -> list[Label] | None:
@@ -175,21 +171,21 @@ def lists_apart(labels: Sequence[Label], body: bytes, delimiter: str) -> tuple[l
     (['t', 'q_1', 'q_2'], b'0,0.1,0.2\\n')
     """
     first = re.search(rb"[^\n]+", body)
-    if first is None or not _LIST.search(first[0]):
+    if first is None or not _LIST_CELL.search(first[0]):
         return list(labels), body
-    counts = [len(_items(match[1])) for match in _LIST.finditer(first[0])]
-    cells = _LIST.sub(b"\0", first[0]).split(delimiter.encode())
+    counts = [len(_items(match[1])) for match in _LIST_CELL.finditer(first[0])]
+    cells = _LIST_CELL.sub(b"\0", first[0]).split(delimiter.encode())
     if not counts or len(cells) != len(labels):
         return list(labels), body
-    left, found = iter(counts), list[Label]()
+    left, apart = iter(counts), list[Label]()
     for label, cell in zip(labels, cells, strict=True):
         if cell.strip() != b"\0":
-            found.append(label)
+            apart.append(label)
             continue
         for number in range(1, next(left) + 1):
             name = f"{label.name}_{number}"
-            found.append(Label(name, name, label.unit))
-    return found, _LIST.sub(lambda match: delimiter.encode().join(_items(match[1])), body)
+            apart.append(Label(name, name, label.unit))
+    return apart, _LIST_CELL.sub(lambda match: delimiter.encode().join(_items(match[1])), body)
 
 
 def _items(text: bytes) -> list[bytes]:
@@ -204,7 +200,7 @@ def seconds_of_clock(texts: Sequence[str | None]) -> Array:
     """
     found = np.full(len(texts), np.nan)
     for row, text in enumerate(texts):
-        if text is not None and (match := CLOCK.fullmatch(text.strip())):
+        if text is not None and (match := CLOCK_CELL.fullmatch(text.strip())):
             seconds = 3600.0 * int(match["h"]) + 60.0 * int(match["m"]) + float(match["s"].replace(",", "."))
             found[row] = SECONDS_PER_DAY * _day(match["day"]) + seconds
     there = np.isfinite(found)
@@ -226,15 +222,15 @@ def _day(text: str | None) -> int:
         return 0
 
 
-# ---- A time before each signal ---------------------------------------------------------------------------------------
+# ---- Pairs of a name and a number ------------------------------------------------------------------------------------
 
 
 MAX_PAIRS_BYTES = 2**26  # of a file of pairs: each number is an object before it is in a column
 MIN_SHARE_OF_LINES = 0.8  # of the first lines, that have the form of pairs
 MIN_SHARE_OF_RECORDS = 0.5  # of all records, that contain a column
-LEAD = "lead"  # number at the beginning of each line
-_CLOCK = CLOCK.pattern.replace("?P<", "?P<_")
-_BEGIN = re.compile(rf"\s*\[?(?:(?P<clock>{_CLOCK})|(?P<number>{NUMBER.pattern}))\]?(?=[\s,;:|\]])[\s,;:|]*")
+LEAD_NAME = "lead"  # number at the beginning of each line
+_CLOCK_PATTERN = CLOCK_CELL.pattern.replace("?P<", "?P<_")
+_LINE_BEGIN = re.compile(rf"\s*\[?(?:(?P<clock>{_CLOCK_PATTERN})|(?P<number>{NUMBER_CELL.pattern}))\]?(?=[\s,;:|\]])[\s,;:|]*")
 
 
 class Pair(NamedTuple):
@@ -284,7 +280,7 @@ def _is_of_block(line: str) -> bool:
 
 
 def _without_begin(line: str) -> str:
-    begin = _BEGIN.match(line)
+    begin = _LINE_BEGIN.match(line)
     return line[begin.end() :] if begin else line
 
 
@@ -298,16 +294,16 @@ def _pairs(line: str) -> list[Pair]:
     if ":" not in line and "=" not in line:
         return []
     delimiter = next((mark for mark in "\t;|," if mark in line), None)
-    found = list[Pair]()
+    pairs = list[Pair]()
     for piece in line.split(delimiter) if delimiter else [line]:
         signs = len(re.findall(r"[:=]", piece))
         cells = [piece] if signs == 1 else re.sub(r"\s*[:=]\s*", "=", piece).split()
         for cell in cells:
             if signs and (pair := _pair(cell)):
-                found.append(pair)
-            elif found and signs > 1 and not found[-1].unit and is_unit(cell):
-                found[-1] = found[-1]._replace(unit=cell)
-    return found
+                pairs.append(pair)
+            elif pairs and signs > 1 and not pairs[-1].unit and is_unit(cell):
+                pairs[-1] = pairs[-1]._replace(unit=cell)
+    return pairs
 
 
 def _pair(cell: str) -> Pair | None:
@@ -318,7 +314,7 @@ def _pair(cell: str) -> Pair | None:
     name, text = names[-2].strip(" \"'{}()"), names[-1].strip(" \"'{}()")
     if not re.match(r"[^\W\d]", name) or len(name) > MAX_NAME:
         return None
-    number = NUMBER.match(text)
+    number = NUMBER_CELL.match(text)
     unit = text[number.end() :].strip(" []()") if number else ""
     if number is None or (unit and not is_unit(unit)):
         return Pair(name, np.nan) if text.casefold() in NOT_FINITE else None
@@ -343,7 +339,7 @@ class _Records:
         """Take the pairs of a line."""
         if self.separated:
             return self._read_block(line)
-        begin = _BEGIN.match(line)
+        begin = _LINE_BEGIN.match(line)
         pairs = _pairs(line[begin.end() :] if begin else line)
         if not pairs:
             self.left_out += 1
@@ -351,7 +347,7 @@ class _Records:
         if any(pair.name in self._row for pair in pairs):
             self.end()
         if begin and begin["number"]:
-            self._row[LEAD] = float(begin["number"].replace(",", "."))
+            self._row[LEAD_NAME] = float(begin["number"].replace(",", "."))
         self._clock = self._clock or (begin["clock"] if begin else None)
         for pair in pairs:
             self._take(pair.name, pair)
@@ -409,7 +405,7 @@ class _Records:
 
     def _time(self, columns: dict[str, Array]) -> dict[str, Array]:
         """Return the time of the records: of clocks, or of numbers in front that count no lines."""
-        lead = columns.pop(LEAD, None)
+        lead = columns.pop(LEAD_NAME, None)
         if any(self.clocks):
             return {"time": seconds_of_clock(self.clocks)}
         if lead is not None and np.isfinite(lead).all() and not np.array_equal(lead, np.round(lead)):

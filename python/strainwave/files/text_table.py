@@ -30,10 +30,10 @@ from strainwave.files.labels import (
 )
 from strainwave.files.table_format import Format
 from strainwave.files.text_layout import (
-    CLOCK,
+    CLOCK_CELL,
     MAX_LINE_BYTES,
     NOT_FINITE,
-    NUMBER,
+    NUMBER_CELL,
     lines_above,
     lists_apart,
     pairs_table,
@@ -49,11 +49,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-TITLE = "# title: "
+TITLE_LINE = "# title: "
 
-_DURATION = re.compile(rb"(?<=\d) sec(?=[,;\t\n])")  # behind each time of a timetable of MATLAB
-_DATE = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
-NOTHING = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")  # what programs write for no value
+_DURATION_UNIT = re.compile(rb"(?<=\d) sec(?=[,;\t\n])")  # behind each time of a timetable of MATLAB
+_DATE_CELL = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
+# What programs write for no value.
+EMPTY_CELLS = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N/A", "n/a", "-")
 _MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
 MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells are texts before they are numbers
 
@@ -68,10 +69,10 @@ def open_text(path: str | Path) -> CsvTable | ArrayTable:
     if pairs := pairs_table(file, _blank_comments(data)):
         _check_names(file, [label.name for label in pairs.labels])
         return pairs
-    found = sideways(_blank_comments(data)) if len(data) <= MAX_SIDEWAYS_BYTES else None
-    if found is None:
+    turned = sideways(_blank_comments(data)) if len(data) <= MAX_SIDEWAYS_BYTES else None
+    if turned is None:
         return _csv_table(file, data)
-    names, series = found
+    names, series = turned
     _check_names(file, names)
     remark = f"it has a row for each channel: {len(names)} rows of {series.shape[1]} numbers, taken as columns"
     return ArrayTable(file, "", labels_of(names), list(series), [remark])
@@ -91,11 +92,11 @@ def _read_text(path: str | Path) -> tuple[str, bytes]:
         raise ValueError(unreadable(path, error)) from None
     data = _checked_text(file, data).removeprefix(codecs.BOM_UTF8)
     data = re.sub(rb"(?m)^%", b"#", data) if data[:1] == b"%" or b"\n%" in data else data  # comments of MATLAB, of ROS
-    return file, _DURATION.sub(b"", data) if b" sec" in data[:MAX_LINE_BYTES] else data
+    return file, _DURATION_UNIT.sub(b"", data) if b" sec" in data[:MAX_LINE_BYTES] else data
 
 
 def _csv_table(file: str, data: bytes) -> CsvTable:
-    title = re.match(TITLE.encode() + rb"([^\n]*)", data)
+    title = re.match(TITLE_LINE.encode() + rb"([^\n]*)", data)
     comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
     data = _blank_comments(data)
     if scope := scope_header(data):
@@ -120,7 +121,7 @@ def _csv_table(file: str, data: bytes) -> CsvTable:
         first = re.sub(r" (?=[\[(])", "", header[1].decode())
     labels = _labels(f"{file} line {line}", first, delimiter)
     begins = header.end(1)
-    numeric = [bool(NUMBER.fullmatch(label.text)) or label.text.casefold() in NOT_FINITE for label in labels]
+    numeric = [bool(NUMBER_CELL.fullmatch(label.text)) or label.text.casefold() in NOT_FINITE for label in labels]
     above = _labels_above(comment, len(labels), delimiter) if any(numeric) else None
     if above or all(numeric):
         begins = header.start(1)
@@ -171,7 +172,7 @@ def _delimiter(header: str, row: str) -> str:
         return found
     cells = row.split() if row else header.split()
     names = re.sub(r"(?<! ) +(?=[\[(])", "", header).split()
-    apart = len(cells) > 1 and len(names) == len(cells) and all(NUMBER.fullmatch(cell) for cell in cells)
+    apart = len(cells) > 1 and len(names) == len(cells) and all(NUMBER_CELL.fullmatch(cell) for cell in cells)
     return " " if apart and '"' not in header else ","
 
 
@@ -193,11 +194,11 @@ def _check_names(place: str, names: Sequence[str]) -> None:
 
 def _labels_above(comment: re.Match[bytes] | None, count: int, delimiter: str) -> list[Label] | None:
     """The names that a comment right above the first row gives to its columns, as programs write them that know no header."""
-    if comment is None or len(comment[1]) > MAX_NAME or comment[0].startswith(TITLE.encode()):
+    if comment is None or len(comment[1]) > MAX_NAME or comment[0].startswith(TITLE_LINE.encode()):
         return None
     text = re.sub(r"\s+(?=[\[(])", "", comment[1].decode().strip())
     names = [each.strip() for each in (text.split() if delimiter == " " else text.split(delimiter))]
-    if len(names) != count or not all(names) or any(NUMBER.fullmatch(name) for name in names):
+    if len(names) != count or not all(names) or any(NUMBER_CELL.fullmatch(name) for name in names):
         return None
     return labels_of(names)
 
@@ -240,7 +241,7 @@ class CsvTable:
         for line, text in islice(self._rows(), _MAX_CONTENT_ROWS):
             for cells, cell in zip(seen, self._cells(line, text), strict=False):
                 cells.append(cell.strip(" \t"))
-        return [_content([cell for cell in cells if cell not in NOTHING]) for cells in seen]
+        return [_content([cell for cell in cells if cell not in EMPTY_CELLS]) for cells in seen]
 
     def measured(self, sources: Sequence[ColumnSource]) -> tuple[dict[str, Array], list[str]]:
         """The columns wanted, nan where nothing is written, dates as seconds since the first; and what was left out.
@@ -257,11 +258,11 @@ class CsvTable:
         whole._check_quotes()
         for mark in "." if self.delimiter == "," else ".,":
             try:
-                return whole._parse(sources, mark, NOTHING, dates), remarks
+                return whole._parse(sources, mark, EMPTY_CELLS, dates), remarks
             except pyarrow.ArrowInvalid as error:
                 reason = f": {one_line(str(error))}"
         numbers = [source for source in sources if source not in dates]
-        raise ValueError(f"{self.file}{whole._fault(numbers, NOTHING) or reason}")
+        raise ValueError(f"{self.file}{whole._fault(numbers, EMPTY_CELLS) or reason}")
 
     def _of_header(self) -> str:
         return f"its header is line {self.above + 1}"
@@ -287,7 +288,8 @@ class CsvTable:
         pairs = zip(cells, self.contents, strict=False)
         measured = [cell.strip(" \t") for cell, content in pairs if content == "numbers"]
         is_text = [
-            not NUMBER.fullmatch(cell) and cell not in NOTHING and cell.casefold() not in NOT_FINITE for cell in measured
+            not NUMBER_CELL.fullmatch(cell) and cell not in EMPTY_CELLS and cell.casefold() not in NOT_FINITE
+            for cell in measured
         ]
         return len(cells) == len(self.labels) and len(measured) > 1 and all(is_text)
 
@@ -339,8 +341,8 @@ class CsvTable:
             ),
         )
         seconds = {source.name for source in dates}
-        found = {name: table.column(key) for name, key in keys.items()}
-        return {name: _seconds(column) if name in seconds else _numbers(column) for name, column in found.items()}
+        columns = {name: table.column(key) for name, key in keys.items()}
+        return {name: _seconds(column) if name in seconds else _numbers(column) for name, column in columns.items()}
 
     def _date_type(self, source: ColumnSource) -> pyarrow.DataType:
         """A time stamp, with the zone, if the first one has one; a text, where it is none that Arrow reads."""
@@ -349,8 +351,8 @@ class CsvTable:
         cells = (
             self._cells(line, text)[source.position].strip(" \t") for line, text in islice(self._rows(), _MAX_CONTENT_ROWS)
         )
-        written = next(cell for cell in cells if cell not in NOTHING)
-        if not _DATE.fullmatch(written):
+        written = next(cell for cell in cells if cell not in EMPTY_CELLS)
+        if not _DATE_CELL.fullmatch(written):
             return pyarrow.string()
         return pyarrow.timestamp("ns", "UTC" if re.search(r"(?:Z|[+-]\d\d:?\d\d)$", written) else None)
 
@@ -365,7 +367,7 @@ class CsvTable:
                 return f" line {line}: {self._miscounted(cells)}"
             for source in sources:
                 cell = cells[source.position].strip(" \t")
-                number = NUMBER.fullmatch(cell)
+                number = NUMBER_CELL.fullmatch(cell)
                 if cell in nothing or (nothing and cell.casefold() in NOT_FINITE):
                     continue
                 if not number or number[1] not in marks:
@@ -394,9 +396,9 @@ class CsvTable:
 
 def _content(cells: Sequence[str]) -> Content:
     cells = [cell for cell in cells if cell.casefold() not in NOT_FINITE] or cells
-    if cells and all(NUMBER.fullmatch(cell) for cell in cells):
+    if cells and all(NUMBER_CELL.fullmatch(cell) for cell in cells):
         return "numbers"
-    is_date = cells and any(all(form.fullmatch(cell) for cell in cells) for form in (_DATE, CLOCK))
+    is_date = cells and any(all(form.fullmatch(cell) for cell in cells) for form in (_DATE_CELL, CLOCK_CELL))
     return "dates" if is_date else "other"
 
 
@@ -433,7 +435,7 @@ def _quotation_fault(text: memoryview, delimiter: str) -> int | None:
 def _not_a_number(text: str, marks: str) -> str:
     if not text:
         return "the cell is empty; every cell must hold a number"
-    if NUMBER.fullmatch(text) and len(marks) == 1:
+    if NUMBER_CELL.fullmatch(text) and len(marks) == 1:
         return f'{quoted(text)} is not a number with the decimal mark "{marks}"'
     return f"{quoted(text)} is not a number"
 

@@ -13,16 +13,15 @@ from typing import NamedTuple
 
 RAD_PER_ARCMIN = radians(1.0 / 60.0)
 UNITS_SPREAD = 0.3  # of individual gears about the catalogue's stiffness (Harmonic Drive AG)
-ELEMENTS = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)  # stiffness of the Maxwell elements over k1: they slip at w/4, w/2 and w
+# Stiffness of the Maxwell elements over k1: they slip at w/4, w/2 and w.
+ELEMENT_SHARES = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
 DAMPING_RATIO = 0.02
 STARTING_TORQUE = 5.764e-4  # N.m: times size³ over ratio; geometric mean of CSF-17-100 and CSF-25-50
 STARTING_SPREAD = 0.2  # what the rule misses its own two figures by
 VISCOUS_FRICTION = 3.492e-4  # N.m.s/rad: of size 20 at 20 degC, from the no-load running torque of CPL-20-160
 VISCOUS_SPREAD = 0.5  # assumed: one gear alone was at hand
-ANY_SIZE, ANY_SIZE_SPREAD = (
-    25.0,
-    0.5,
-)  # the middle of the catalogue, and the standard deviation of log(size) over its nine sizes
+# The middle of the catalogue, and the standard deviation of log(size) over its nine sizes.
+ANY_SIZE, ANY_SIZE_SPREAD = (25.0, 0.5)
 
 
 class Law(NamedTuple):
@@ -53,7 +52,7 @@ LAWS: dict[str, tuple[Law, Law, Law]] = {
 SIZED_BY = (("k1", "k2", "k3", "t1", "t2"), ("rated_torque",), ("wave_generator_inertia",))  # the best first
 
 HYSTERESIS_LOSS = (3.0 * RAD_PER_ARCMIN, 1.0 * RAD_PER_ARCMIN, 1.0 * RAD_PER_ARCMIN)  # bounds of the maker, by group of ratios
-ACCURACY = ((17.0, (2.0, 1.2, 1.0)), (32.0, (1.5, 1.0, 0.8)), (float("inf"), (1.5, 0.7, 0.5)))  # arcmin, up to a size
+ACCURACY_BOUNDS = ((17.0, (2.0, 1.2, 1.0)), (32.0, (1.5, 1.0, 0.8)), (float("inf"), (1.5, 0.7, 0.5)))  # arcmin, up to a size
 
 
 def law(name: str, ratio: float) -> Law:
@@ -73,7 +72,7 @@ def hysteresis_loss(ratio: float) -> float:
 
 def transmission_accuracy(size: float, ratio: float) -> float:
     """The maker's bound on the kinematic error, peak to peak [rad]."""
-    return next(bounds for largest, bounds in ACCURACY if size < largest + 1.0)[group(ratio)] * RAD_PER_ARCMIN
+    return next(bounds for largest, bounds in ACCURACY_BOUNDS if size < largest + 1.0)[group(ratio)] * RAD_PER_ARCMIN
 
 
 def starting_torque(size: float, ratio: float) -> float:
@@ -121,8 +120,8 @@ class Divided:
         width = 0.5 * loss
         slope = t1 / (t1 / k1 + 0.5 * width)
         held = 0.5 * slope * width
-        elements = len(ELEMENTS)
-        return cls(slope, t1 - held, t2 - held, tuple(part * slope for part in ELEMENTS), (held / elements,) * elements)
+        elements = len(ELEMENT_SHARES)
+        return cls(slope, t1 - held, t2 - held, tuple(part * slope for part in ELEMENT_SHARES), (held / elements,) * elements)
 
 
 def mean_size(values: dict[str, float], ratio: float) -> float:

@@ -23,7 +23,7 @@ from strainwave.messages import quoted, shortened
 Values = TypeVar("Values", float, NDArray[np.float64])
 Powers = dict[str, int]  # of symbols, none of them zero
 
-_PREFIXES = {"u": Fraction("1e-6"), "m": Fraction("1e-3"), "c": Fraction("1e-2"), "k": Fraction(1000)}
+_UNIT_PREFIXES = {"u": Fraction("1e-6"), "m": Fraction("1e-3"), "c": Fraction("1e-2"), "k": Fraction(1000)}
 _BASE_UNITS = ("s", "m", "kg", "A", "K", "rad", "px")  # px: pixels of an image
 _PI = Fraction(math.pi)
 
@@ -54,14 +54,14 @@ _ZERO_OF_CELSIUS = Fraction("273.15")  # K
 
 _MAX_UNIT_CHARACTERS = 100  # a bound for the work that a text from outside can cause
 
-_CHARACTERS = str.maketrans(
+_OTHER_CHARACTERS = str.maketrans(
     {"°": "deg", "\u2032": "arcmin", "\u2033": "arcsec", "Ω": "Ohm", "\u2126": "Ohm", "µ": "u", "\u03bc": "u"}
     | {"·": ".", "⋅": ".", "*": ".", "\u2212": "-", "⁻": "-", "¹": "1", "²": "2", "³": "3"}
     | dict.fromkeys("\u00a0\u2009\u202f", " ")
 )
 
 # Products people write in one word, and other names of a symbol.
-_WORDS = {
+_OTHER_SPELLINGS = {
     "Nm": "N*m", "NM": "N*m", "Ncm": "N*cm", "Nmm": "N*mm", "mNm": "mN*m", "kNm": "kN*m", "Nms": "N*m*s", "kgm": "kg*m",
     "kgcm": "kg*cm", "gcm": "g*cm", "Vs": "V*s", "As": "A*s", "r": "rev", "RPM": "rpm", "ohm": "Ohm", "sec": "s", "msec": "ms",
     "cNm": "cN*m", "kgfm": "kgf*m", "kgfcm": "kgf*cm", "Grad": "deg", "tr": "rev", "Umdr": "rev", "Upm": "rpm", "UPM": "rpm",
@@ -75,16 +75,16 @@ _OF_ARC = re.compile(
 _PER_SECOND = {"degps": "deg/s", "dps": "deg/s", "radps": "rad/s", "rps": "rev/s"}  # as data sheets write them
 
 # Counts of an encoder with the counts of one revolution: counts/16384, inc/4096/s.
-_COUNTED = re.compile(
+_COUNTED_UNIT = re.compile(
     r"(?:counts?|cnts?|cts|inc|ink|increments?|inkremente?|ticks?|pulses?)/([1-9]\d{0,11})(/s)?", re.ASCII | re.IGNORECASE
 )
 
 # A share of a rated value, as drives report torque and current: permille of 0.4 N.m, % of 12 A.
-_SHARES = {"%": 1e-2, "percent": 1e-2, "\u2030": 1e-3, "permille": 1e-3, "promille": 1e-3, "permil": 1e-3}
-_SHARE = re.compile(rf"({'|'.join(_SHARES)}) of (\d{{1,9}}(?:\.\d{{1,9}})?) ?(\S.{{0,40}})")
+_SHARE_SIZES = {"%": 1e-2, "percent": 1e-2, "\u2030": 1e-3, "permille": 1e-3, "promille": 1e-3, "permil": 1e-3}
+_SHARE_UNIT = re.compile(rf"({'|'.join(_SHARE_SIZES)}) of (\d{{1,9}}(?:\.\d{{1,9}})?) ?(\S.{{0,40}})")
 
 # German data sheets count revolutions as U, but only per time; alone, U is a voltage there.
-_REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
+_GERMAN_REVOLUTIONS = re.compile(r"^U(?=/(?:min|s)$|\*(?:min|s)-1$)")
 
 
 def convert(values: Values, unit: str, to: str) -> Values:
@@ -116,7 +116,7 @@ def convert(values: Values, unit: str, to: str) -> Values:
     """
     if np.isnan(arguments.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
-    if any(isinstance(each, str) and (_COUNTED.fullmatch(each) or _SHARE.fullmatch(each)) for each in (unit, to)):
+    if any(isinstance(each, str) and (_COUNTED_UNIT.fullmatch(each) or _SHARE_UNIT.fullmatch(each)) for each in (unit, to)):
         return _convert_scaled(values, unit, to)
     source, target = _parse(unit), _parse(to)
     if source == target:
@@ -149,10 +149,10 @@ def _convert_scaled(values: Values, unit: str, to: str) -> Values:
 
 def _size(unit: str) -> tuple[float, str]:
     """Return the size of a unit in a plain one: of a count in revolutions, of a share of a rated value in its unit."""
-    if counted := _COUNTED.fullmatch(unit):
+    if counted := _COUNTED_UNIT.fullmatch(unit):
         return 1.0 / int(counted[1]), f"rev{counted[2] or ''}"
-    if share := _SHARE.fullmatch(unit):
-        return _SHARES[share[1]] * float(share[2]), share[3]
+    if share := _SHARE_UNIT.fullmatch(unit):
+        return _SHARE_SIZES[share[1]] * float(share[2]), share[3]
     return 1.0, unit
 
 
@@ -162,7 +162,7 @@ def is_share(unit: str) -> bool:
     >>> is_share("%"), is_share("‰"), is_share("% of 12 A")
     (True, True, False)
     """
-    return _text(unit).strip().casefold() in _SHARES
+    return _text(unit).strip().casefold() in _SHARE_SIZES
 
 
 def _turning(unit: _Unit, other: _Unit) -> _Unit:
@@ -222,7 +222,7 @@ def counts(unit: str) -> bool:
     (True, True, False)
     """
     unit = _text(unit)
-    return any(_COUNTED.fullmatch(each) for each in (unit, f"{unit}/1", unit.replace("/", "/1/", 1)))
+    return any(_COUNTED_UNIT.fullmatch(each) for each in (unit, f"{unit}/1", unit.replace("/", "/1/", 1)))
 
 
 def check(unit: str) -> str:
@@ -243,12 +243,12 @@ def check(unit: str) -> str:
     >>> check("Nm s/rad"), check("kg m^2"), check("°"), check("N.m/(rad/s)"), check("inc/4096"), check("‰ of 0.4 Nm")
     ('N.m.s/rad', 'kg.m2', 'deg', 'N.m.s/rad', 'counts/4096', 'permille of 0.4 N.m')
     """
-    if isinstance(unit, str) and (counted := _COUNTED.fullmatch(unit)):
+    if isinstance(unit, str) and (counted := _COUNTED_UNIT.fullmatch(unit)):
         return f"counts/{counted[1]}{counted[2] or ''}"
-    if isinstance(unit, str) and (share := _SHARE.fullmatch(unit)):
+    if isinstance(unit, str) and (share := _SHARE_UNIT.fullmatch(unit)):
         if not float(share[2]) > 0.0:
             raise ValueError(f"unit {quoted(unit)}: the rated value must be larger than 0")
-        return f"{'%' if _SHARES[share[1]] == 1e-2 else 'permille'} of {share[2]} {check(share[3])}"
+        return f"{'%' if _SHARE_SIZES[share[1]] == 1e-2 else 'permille'} of {share[2]} {check(share[3])}"
     standard = _spelling(_parse(unit).powers)
     if len(standard) > _MAX_UNIT_CHARACTERS:
         raise ValueError(f"unit {quoted(unit)} has more than {_MAX_UNIT_CHARACTERS} characters in standard spelling")
@@ -310,7 +310,7 @@ def _parsed(unit: str) -> _Unit:
     try:
         parsed = _measured(_powers(unit))
     except ValueError:
-        if _COUNTED.fullmatch(f"{unit.strip()}/1"):
+        if _COUNTED_UNIT.fullmatch(f"{unit.strip()}/1"):
             raise ValueError(f"unit {quoted(unit)} needs the counts of one revolution; write it like counts/16384") from None
         if is_share(unit):
             raise ValueError(f"unit {quoted(unit)} needs the rated value; write it like permille of 0.4 N.m") from None
@@ -334,7 +334,7 @@ def _measured(powers: Powers) -> _Unit:
     for symbol, power in powers.items():
         prefix, stem = _split(symbol)
         own_size, own_dimension = _of_symbol(stem)
-        size *= (own_size * _PREFIXES.get(prefix, 1)) ** power
+        size *= (own_size * _UNIT_PREFIXES.get(prefix, 1)) ** power
         dimension = _times(dimension, own_dimension, power)
     return _Unit(powers, size, dimension)
 
@@ -352,7 +352,7 @@ def _of_symbol(symbol: str) -> tuple[Fraction, Powers]:
 def _split(symbol: str) -> tuple[str, str]:
     """Return the prefix of a symbol, which may be empty, and the rest."""
     for prefix, stem in (("", symbol), (symbol[:1], symbol[1:])):
-        if (stem in _BASE_UNITS or stem in _DERIVED_UNITS) and (not prefix or prefix in _PREFIXES):
+        if (stem in _BASE_UNITS or stem in _DERIVED_UNITS) and (not prefix or prefix in _UNIT_PREFIXES):
             return prefix, stem
     raise ValueError(f"{symbol} is not a symbol")
 
@@ -365,13 +365,13 @@ def _times(powers: Powers, others: Powers, exponent: int) -> Powers:
 
 def _powers(unit: str) -> Powers:
     """Return the powers of the symbols of a unit: of `N·m s/rad^2`, N 1, m 1, s 1, rad -2."""
-    text = unit.replace("**", "^").translate(_CHARACTERS)
+    text = unit.replace("**", "^").translate(_OTHER_CHARACTERS)
     if not text.isprintable():
         raise ValueError("not one line of text")
     text = _OF_ARC.sub(lambda found: "arcmin" if found[1].lower() == "min" else "arcsec", text)
     text = re.sub(r" *([./()]) *", r"\1", text.strip())
     text = "1" if text == "-" else re.sub(r" +|\.|(?<=[A-Za-z])-(?=[A-Za-z])", "*", text)
-    text = _REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", _PER_SECOND.get(text, text)))
+    text = _GERMAN_REVOLUTIONS.sub("rev", re.sub(r"\^(?=-?\d)", "", _PER_SECOND.get(text, text)))
     if not re.fullmatch(r"(?:[A-Za-z]++(?:-?[1-9])?+|\b1\b|[*/()])++", text):  # possessive, so that it takes linear time
         raise ValueError("not a product of powers")
     tokens = re.findall(r"[A-Za-z]+(?:-?[1-9])?|[1*/()]", text)[::-1]
@@ -406,7 +406,7 @@ def _taken(tokens: list[str]) -> Powers:
     if not token or token in "*/)":
         raise ValueError("a symbol is missing")
     word = token.rstrip("-123456789")
-    *leading, last = _WORDS.get(word, word).split("*")
+    *leading, last = _OTHER_SPELLINGS.get(word, word).split("*")
     powers = {last: int(token[len(word) :] or 1)}
     for symbol in leading:
         powers = _times(powers, {symbol: 1}, 1)

@@ -15,7 +15,7 @@ from uuid import uuid4
 from strainwave.messages import one_line
 from strainwave.operating_system import adopt, locked_folder
 
-DRAFT = ".strainwave-"  # beginning of the names of files that are still being written
+DRAFT_PREFIX = ".strainwave-"  # beginning of the names of files that are still being written
 written: list[Path] = []  # folders and files with results of this process' command, listed at an interrupt
 
 
@@ -127,7 +127,7 @@ def claiming(folder: Path) -> Iterator[None]:
 
 def remove_drafts(folder: Path) -> None:
     """Removes what processes that were killed left in a folder, which nobody else may be writing to."""
-    for draft in folder.glob(f"{DRAFT}*"):
+    for draft in folder.glob(f"{DRAFT_PREFIX}*"):
         draft.unlink(missing_ok=True)
 
 
@@ -168,22 +168,22 @@ def _draft(path: Path) -> Iterator[_Draft | _Through]:
     _check_name(path)
     target = Path(os.path.realpath(path))
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except FileNotFoundError:
-        found = None
+        status = None
         if not target.parent.is_dir():
             raise FileNotFoundError(f"there is no folder {target.parent if path.is_symlink() else path.parent}") from None
-    if found is not None and (stream := _stream(path, found)) is not None:
+    if status is not None and (stream := _stream(path, status)) is not None:
         with stream:
             yield _Through(stream)
         return
-    if found is not None and not os.access(target, os.W_OK):
+    if status is not None and not os.access(target, os.W_OK):
         raise PermissionError("it is read-only")
     draft = _open_beside(target)
     try:
         with draft as file:  # closed before it is removed, as Windows removes no open file
-            if found is not None:
-                adopt(file.fileno(), found)
+            if status is not None:
+                adopt(file.fileno(), status)
             yield _Draft(file, target)
     finally:
         Path(draft.name).unlink(missing_ok=True)
@@ -213,7 +213,7 @@ def _stream(path: Path, found: os.stat_result) -> BinaryIO | None:
 
 def _open_beside(target: Path) -> BinaryIO:
     try:
-        return target.with_name(f"{DRAFT}{uuid4().hex}").open("xb")
+        return target.with_name(f"{DRAFT_PREFIX}{uuid4().hex}").open("xb")
     except PermissionError:
         raise PermissionError(f"no file can be made in {target.parent}, as permission is denied") from None
 

@@ -60,7 +60,7 @@ class _Reading:
 
     @property
     def error(self) -> float:
-        """Root mean square over what varies, on data held out [1]."""
+        """Root mean square over what varies, on held-out data [1]."""
         return float(np.sqrt(self.squares.sum() / max(self.samples.sum(), 1.0)))
 
     @property
@@ -181,9 +181,6 @@ def _most_probable(
         readings: of the motion, the usual one first
         question: that is open between them; empty if there is one
         source, known, given: as of `decided`
-
-    Raises:
-        QuestionError: several are nearly as probable, or they are not compared
     """
     usual = Usual.of(known)
     by_reading = [_ways(each, known, given, usual, is_one=not question) for each in _sensible(readings)]
@@ -340,7 +337,7 @@ def _report(best: _Reading, others: Sequence[_Reading]) -> str:
     assert best.file is not None
     effort = next(name for name in ("current", *TORQUE_CHANNELS, "voltage") if name in best.file.columns)
     least = f"read as {_described(best)}, which leaves {_percent(best)} of {best.file.columns[effort]} unexplained"
-    return "; ".join([f"{least} on data held out", *(f"{_described(each)}: {_left(each)}" for each in others)])
+    return "; ".join([f"{least} on held-out data", *(f"{_described(each)}: {_left(each)}" for each in others)])
 
 
 def _answer_of(file: Recognised) -> Answer:

@@ -15,7 +15,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from strainwave import _core
-from strainwave.files.writing import DRAFT, replacing
+from strainwave.files.writing import DRAFT_PREFIX, replacing
 from strainwave.native.private import content_of
 from strainwave.operating_system import HAS_OWNERS, LOCK_POLL_SECONDS, NO_LINK, lock_file, user
 
@@ -141,7 +141,7 @@ def tidy(folder: Path, keep: str) -> None:
 @contextmanager
 def draft(folder: Path) -> Iterator[Path]:
     """Make a folder for the files of one compilation in the folder of the kernels, and remove it."""
-    with TemporaryDirectory(prefix=DRAFT, dir=folder, ignore_cleanup_errors=True) as name:
+    with TemporaryDirectory(prefix=DRAFT_PREFIX, dir=folder, ignore_cleanup_errors=True) as name:
         yield Path(name)
 
 
@@ -154,7 +154,7 @@ def alone(folder: Path, key: str, max_wait: float) -> Iterator[None]:
         key: of the kernel
         max_wait: after which both make it, which is no harm [s]
     """
-    path = folder / f"{DRAFT}{key}.lock"
+    path = folder / f"{DRAFT_PREFIX}{key}.lock"
     with ExitStack() as stack:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | NO_LINK, 0o600)
         stack.callback(os.close, descriptor)
@@ -212,7 +212,7 @@ def _remove(path: Path) -> None:
 
 def _remove_drafts(folder: Path, older_than: float) -> None:
     """Remove drafts and locks of an age [s] that no compilation reaches."""
-    for path in folder.glob(f"{DRAFT}*"):
+    for path in folder.glob(f"{DRAFT_PREFIX}*"):
         if time.time() - _last_used(path) >= older_than:
             if path.is_dir():
                 shutil.rmtree(path, ignore_errors=True)

@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 Shaft = Literal["input", "mesh", "output"]
 
+MAX_DRAWN_TURNS = 6.0  # of the input: the error of a longer record is a band of one colour
 ORDERS = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0)  # of the input, looked for in every record
 MESH_ORDERS = (1.0, 2.0, 4.0)  # of the wave generator seen from the spline that turns: 2 z_c / z_f and its like
 OUTPUT_ORDERS = (1.0, 2.0)  # of the output: eccentricity of an encoder disc, gravity
@@ -160,12 +161,18 @@ def draw_error(figure: Figure, error: TransmissionError) -> None:
     curves = error.curves
     timed = "time" in curves
     x = curves["time"] if timed else curves["input_angle"] / tau
-    whole, residual = figure.subplots(2, 1, sharex=True, height_ratios=(2.0, 1.0))
-    marks.curve(whole, x, curves["transmission_error"], color=LIGHT["measured"], linewidth=0.9, label="transmission error")
-    marks.curve(whole, x, curves["kinematic_error"], color=LIGHT["model"], linewidth=0.9, label="kinematic error found")
+    turns = np.abs(curves["input_angle"] - curves["input_angle"][0]) / tau
+    is_cut = bool(turns.max() > 2.0 * MAX_DRAWN_TURNS)
+    first = turns <= MAX_DRAWN_TURNS if is_cut else np.ones(len(turns), bool)
+    whole, residual = figure.subplots(2, 1, sharex=not is_cut, height_ratios=(2.0, 1.0))
+    for name, colour, label in (
+        ("transmission_error", "measured", "transmission error"),
+        ("kinematic_error", "model", "kinematic error found"),
+    ):
+        marks.curve(whole, x[first], curves[name][first], color=LIGHT[colour], linewidth=0.9, label=label)
     marks.curve(residual, x, curves["residual"], color=LIGHT["ink"], linewidth=0.8)
     residual.axhline(0.0, color=LIGHT["muted"], linewidth=0.8)
-    marks.label_axes(whole, "at the output", "rad")
+    marks.label_axes(whole, f"at the output{f', first {MAX_DRAWN_TURNS:g} turns of the input' if is_cut else ''}", "rad")
     along = ("time", "s") if timed else ("revolutions of the input", "1")
     marks.label_axes(residual, "left by orders and loads", "rad", *along)
     marks.legend(figure, whole)
@@ -284,7 +291,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
             f"turn, and it turns {turns_in:.2g} revolutions"
         )
     if chosen and turns_out < MIN_ORDER_PERIODS:
-        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} of its turns, and it turns {turns_out:.3g} times")
+        remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")
     slip = 1.0 / abs(ratio.used)
     if turns_in * slip >= 1.0:
         for order in MESH_ORDERS if ratio.of_strain_wave else ():
@@ -295,7 +302,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     elif chosen and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
-            f"the output turns {turns_out:.2g} revolutions: orders 2 and {near:.4g}, of the wave generator against either "
+            f"the output turns {turns_out:.2g} of a revolution: orders 2 and {near:.4g}, of the wave generator against either "
             "spline, are separated after a whole one"
         )
     return chosen, remarks

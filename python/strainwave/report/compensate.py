@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator
 from importlib import metadata
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,11 +20,9 @@ from strainwave.tuning.candidates import GEAR_EFFECTS
 from strainwave.tuning.compensate import Compensated, draw_errors
 from strainwave.tuning.judging import Judged
 
-if TYPE_CHECKING:
-    pass
-
 NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 MAX_LISTED = 8  # controllers on a terminal
+SECONDARY_WIDTH = 16  # characters
 
 
 def compensate_summary(found: Compensated) -> str:
@@ -34,10 +32,12 @@ def compensate_summary(found: Compensated) -> str:
 
 def _lines(found: Compensated) -> Iterator[str]:
     yield found.verdict
-    on = f"{found.goal.judged_by} on the gears by which one was chosen"
-    yield f"  {on}: the gear as it is stated, median, 95 % below; median of {found.goal.secondary_figure}"
+    yield f"  {found.goal.judged_by} on the gears by which one was chosen, and median of {found.goal.secondary_figure}:"
+    yield f"  {'as stated':>10}{'median':>10}{'95 % below':>12}{found.goal.secondary_figure:>{SECONDARY_WIDTH}}"
     for judged in found.tried[: 1 + MAX_LISTED]:
-        yield f"  {judged.candidate.name:92} {', '.join(_figures(judged, found))}; {_secondary(judged, found)}"
+        stated, median, upper = _figures(judged, found)
+        numbers = f"{stated:>10}{median:>10}{upper:>12}{_secondary(judged, found):>{SECONDARY_WIDTH}}"
+        yield f"  {numbers}  {judged.candidate.name}"
     yield from (f"  {line}" for line in (*removed(found), *too_much(found), *elsewhere(found), margins(found)))
     yield from (f"  note: {remark}" for remark in found.remarks)
 
@@ -186,7 +186,7 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
         "compensate.html.jinja",
         {
             "name": found.gear_set.name,
-            "verdict": found.verdict,
+            "verdict": found.verdict.replace(" %", f"{NO_BREAK_SPACE}%"),
             "figure": figure,
             "cascade": found.baseline.candidate.name,
             "rows": [

@@ -9,12 +9,11 @@ from importlib import metadata
 
 from strainwave.diagnose.smallest_error import DetectionLimit
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
+from strainwave.presentation import PAGE_WIDTH
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
 from strainwave.typeset import number, quantity
-
-MAX_LINE_LETTERS = 110  # on a terminal
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ def plan_summary(record: PlannedRecord, limits: Sequence[DetectionLimit]) -> str
     for each in limits:
         lines.append(f"  {_sentence(each)}")
         for remark in each.remarks:
-            lines += textwrap.wrap(remark, MAX_LINE_LETTERS, initial_indent="    note: ", subsequent_indent="      ")
+            lines += textwrap.wrap(remark, PAGE_WIDTH, initial_indent="    note: ", subsequent_indent="      ")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
 
 

@@ -29,7 +29,7 @@ def error_rows(errors: Mapping[str, float], zero: float, unit: str) -> Iterator[
 
 
 def held_out_rows(held_out: HeldOut | None) -> list[Row]:
-    """Return the errors on data held out; in the pass band of the fit, if the fit had one, as its share alone."""
+    """Return the errors on held-out data; in the pass band of the fit, if the fit had one, as its share alone."""
     if held_out is None:
         return []
     rows = list(error_rows({THIS_MODEL: held_out.error, LEAST_SQUARES: held_out.plain}, held_out.zero, held_out.unit))

@@ -47,6 +47,7 @@ def identify_report(
     *,
     accepted: bool = False,
     folder: Path = Path(),
+    remark: str = "",
     workbench: str = "",
 ) -> str:
     """Return the report of an identification, as one HTML file that needs nothing else.
@@ -56,6 +57,7 @@ def identify_report(
         provenance: how the page came to be, if that is to be shown
         accepted: if true, the gear is written in spite of failed checks
         folder: that it is written into, as the commands of the page name it
+        remark: a sentence for the box of failed checks
         workbench: page beside it that draws the gear, by its name; empty if there is none
 
     Returns:
@@ -71,6 +73,7 @@ def identify_report(
             "note": found.gear_set.note,
             "verdict": _verdict(found, accepted),
             "failed": found.failed,
+            "remark": remark,
             "panels": list(pictures(found)),
             "not_shown": not_determined(found),
             "numbers": numbers_by_source(found),
@@ -111,7 +114,7 @@ def _verdict(found: Identified, accepted: bool) -> str:
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
     if shapes := [quantity(check.value, check.unit) for check in found.checks if has_small_shape(check)]:
-        parts.append(f"what the model leaves has a shape of RMS {listed(shapes)}")
+        parts.append(f"the residual has a shape of RMS {listed(shapes)}")
     if found.unchecked:
         parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
     sentence = "; ".join(parts)
@@ -141,12 +144,12 @@ def _counts(found: Identified) -> str:
 
 
 def _error(found: Identified) -> list[str]:
-    """Return the error on data held out; of several files the shares of the best and the worst. Empty if there is none."""
+    """Return the error on held-out data; of several files the shares of the best and the worst. Empty if there is none."""
     errors = [each.held_out for each in found.files if each.held_out is not None and not each.refused]
     if len(errors) < 2:
-        return [f"RMS error on data held out {each.words}" for each in errors]
+        return [f"RMS error on held-out data {each.words}" for each in errors]
     ends = dict.fromkeys(percent(end) for end in (min(each.relative for each in errors), max(each.relative for each in errors)))
-    return [f"RMS errors on data held out {' to '.join(ends)} of what varies"]
+    return [f"RMS errors on held-out data {' to '.join(ends)} of the signal"]
 
 
 def _several(count: int, noun: str) -> str:
@@ -154,7 +157,7 @@ def _several(count: int, noun: str) -> str:
 
 
 def _card(result: FileResult, anchor: str) -> dict[str, Any]:
-    """Return what the first screen shows of a file: its errors on data held out, and its first picture."""
+    """Return what the first screen shows of a file: its errors on held-out data, and its first picture."""
     drawn = [
         {
             "title": picture.title,
@@ -179,7 +182,7 @@ def _card(result: FileResult, anchor: str) -> dict[str, Any]:
 def _caption(result: FileResult, picture: Picture) -> str:
     curves = picture.curves
     of, words = curves.unit(curves.names[1]), [f"Model: {picture.model or result.model}."]
-    if result.held_out is None or result.held_out.unit != of:  # else the error on data held out stands beside it
+    if result.held_out is None or result.held_out.unit != of:  # else the error on held-out data stands beside it
         words.append(f"RMS error {quantity(rms(residual_of(curves)), of)}.")
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")
@@ -280,13 +283,13 @@ def _undetermined(found: Identified) -> list[tuple[str, str, str, list[dict[str,
     return [(*place, numbers) for place, numbers in groups.items()]
 
 
-def _kept(found: Identified) -> dict[str, list[str]]:
-    """Return the numbers of the gear that no file determines, by the reason."""
-    kept: dict[str, list[str]] = {}
+def _kept(found: Identified) -> dict[str, list[tuple[str, str]]]:
+    """Return path and value of the numbers of the gear that no file determines, by the reason."""
+    kept: dict[str, list[tuple[str, str]]] = {}
     for each in found.states:
         if each.state == "kept" and not each.why.endswith(NOT_GIVEN):
             why = each.why.removeprefix(f"{UNDETERMINED}; ") or "as in the start set"
-            kept.setdefault(why, []).append(f"{each.path} = {number(each.value)} {unit(each.unit)}".strip())
+            kept.setdefault(why, []).append((each.path, f"{number(each.value)} {unit(each.unit)}".strip()))
     return kept
 
 

@@ -33,7 +33,12 @@ MAX_REMARKS = 8  # of a file on a terminal; the report has all
 
 
 def identify_files(
-    found: Identified, provenance: Provenance | None = None, *, accepted: bool = False, folder: Path = Path()
+    found: Identified,
+    provenance: Provenance | None = None,
+    *,
+    accepted: bool = False,
+    folder: Path = Path(),
+    remark: str = "",
 ) -> dict[str, str]:
     """Return the files of a result by their names: numbers as JSON and CSV, the gear, and the report.
 
@@ -44,6 +49,7 @@ def identify_files(
         provenance: command, date and files, if the report is to show them
         accepted: if true, the gear is among them in spite of failed checks
         folder: that they are written into, as the commands of the report name it
+        remark: a sentence for the box of failed checks in the report
     """
     text = StringIO()
     writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
@@ -55,7 +61,7 @@ def identify_files(
         if workbench.is_installed():
             files[WORKBENCH] = workbench.page(found.accepted)
     link = WORKBENCH if WORKBENCH in files else ""
-    report = identify_report(found, provenance, accepted=accepted, folder=folder, workbench=link)
+    report = identify_report(found, provenance, accepted=accepted, folder=folder, remark=remark, workbench=link)
     return files | {"report.html": report}
 
 
@@ -213,7 +219,7 @@ def _of_file(result: FileResult) -> Iterator[str]:
     if result.refused:
         yield f"  NOT USED: {with_options(result.refused)}"
         return
-    yield f"  {result.model}{f'; RMS error on data held out: {result.held_out.words}' if result.held_out is not None else ''}"
+    yield f"  {result.model}{f'; RMS error on held-out data: {result.held_out.words}' if result.held_out is not None else ''}"
     if result.failed:
         yield f"  FAILED: {', '.join(check.name for check in result.failed)}; see above"
     yield from first_remarks(result.remarks, "  ")

@@ -78,9 +78,9 @@ def joints_files(joints: Joints, provenance: Provenance | None = None) -> dict[s
 
 
 def _of_files(found: Identified) -> Iterator[str]:
-    """Yield the model of each file, and its error on data held out."""
+    """Yield the model of each file, and its error on held-out data."""
     for each in found.files:
-        error = f", RMS error on data held out {each.held_out.words}" if each.held_out is not None else ""
+        error = f", RMS error on held-out data {each.held_out.words}" if each.held_out is not None else ""
         yield f"{each.name} {f'NOT USED: {each.refused}' if each.refused else each.model}{error}"
 
 

@@ -8,7 +8,7 @@ from math import inf, tau
 
 import numpy as np
 
-from strainwave import Drive, arguments
+from strainwave import Drive, arguments, typeset
 from strainwave.analysis.compare import Agreement, Difference
 from strainwave.analysis.error_bounds import positioning_error
 from strainwave.analysis.linear import linearise, modes
@@ -193,8 +193,8 @@ def _rows(gear_set: GearSet, path: str, model: object) -> Iterator[Row]:
             name = f"{field.name}[{i}]" if several else field.name
             entry = gear_set.sources[f"{path}.{name}"]
             spread = "" if entry.spread is None else f", spread {100.0 * entry.spread:g} %"
-            sigma = "" if entry.uncertainty is None else f", ± {entry.uncertainty:.2g} {field.unit}"
-            yield name, f"{number:.10g}", "" if field.unit == "1" else field.unit, f"{entry.source}{spread}{sigma}"
+            words = f"{number:.6g}" if entry.uncertainty is None else typeset.uncertain(number, entry.uncertainty)
+            yield name, words, "" if field.unit == "1" else field.unit, f"{entry.source}{spread}"
 
 
 def _covariance(gear_set: GearSet) -> Iterator[str]:
@@ -212,10 +212,10 @@ def _validation(gear_set: GearSet) -> Iterator[str]:
     """Yield the errors of a set on the files that it was identified from."""
     if not gear_set.validation:
         return
-    rows: list[Row] = [("", "kind", "channel", "unit", "error", "held out", "of what varies")]
+    rows: list[Row] = [("", "kind", "channel", "unit", "error", "held out", "of the signal")]
     for each in gear_set.validation:
         share = f"{100.0 * each.relative:.3g} %"
-        rows.append((each.file, each.kind, each.channel, each.unit, f"{each.error:.4g}", f"{each.held_out:.4g}", share))
+        rows.append((each.file, each.kind, each.channel, each.unit, f"{each.error:.3g}", f"{each.held_out:.3g}", share))
     yield from ["", "[validation] root mean square errors on the files that it was identified from"]
     yield from _indented(aligned(rows, "<<<<>>>"))
 

@@ -7,26 +7,31 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields
 from importlib import metadata
 from itertools import pairwise
-from math import isfinite
+from math import isfinite, tau
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from strainwave.drawing import marks
+from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.files.recording import Recording
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
 from strainwave.orders.run_up import RunUp
-from strainwave.orders.torque_ripple import Ripple
-from strainwave.orders.two_encoders import ErrorOrder, TransmissionError
-from strainwave.report import orders_figures as plots
+from strainwave.orders.torque_ripple import Ripple, draw_spectrum
+from strainwave.orders.two_encoders import TransmissionError, draw_error
+from strainwave.presentation import PAGE_WIDTH
+from strainwave.report import figures
 from strainwave.report.page import render
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
 from strainwave.typeset import number, quantity, uncertain, uncertain_quantity
 
-MAX_LINE_LETTERS = 110  # on a terminal
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 STRIP_LETTERS = 72  # of a spectrum on a terminal
 STRIP_HEIGHTS = " ▁▂▃▄▅▆▇█"
 RAD_PER_MICRORADIAN = 1e-6
@@ -60,8 +65,8 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "scaled": ripple.side == "output" and any(isfinite(each.per_input) for each in ripple.lines),
             "concluded": _concluded(ripple),
             "candidates": [_candidate(each.ratio, each.share, each.matched) for each in ripple.candidates],
-            "spectrum": plots.spectrum_figure(ripple, f"spectrum-{place}"),
-            "map": plots.map_figure(ripple, f"map-{place}"),
+            "spectrum": spectrum_figure(ripple, f"spectrum-{place}"),
+            "map": map_figure(ripple, f"map-{place}"),
         },
         "run_up": [] if found.run_up is None else list(_run_up_words(found.run_up)),
         "remarks": _remarks(found),
@@ -88,8 +93,8 @@ def _error(error: TransmissionError, name: str) -> dict[str, Any]:
             }
             for each in error.orders
         ],
-        "figure": plots.error_figure(error, name),
-        "over_angle": plots.turn_figure(error, f"{name}-turn"),
+        "figure": error_figure(error, name),
+        "over_angle": turn_figure(error, f"{name}-turn"),
     }
 
 
@@ -181,7 +186,7 @@ def orders_summary(found: Sequence[OrdersFound]) -> str:
         lines += [] if each.ripple is None else _ripple_lines(each.ripple)
         lines += [] if each.run_up is None else [f"  run-up: {text}" for text in _run_up_words(each.run_up)]
         for remark in _remarks(each):
-            lines += textwrap.wrap(f"  note: {remark}", MAX_LINE_LETTERS, subsequent_indent="    ")
+            lines += textwrap.wrap(f"  note: {remark}", PAGE_WIDTH, subsequent_indent="    ")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
 
 
@@ -192,7 +197,9 @@ def _error_lines(error: TransmissionError) -> Iterator[str]:
     for each in error.orders:
         if each.significant:
             amplitude = uncertain(each.amplitude / RAD_PER_MICRORADIAN, each.amplitude_sigma / RAD_PER_MICRORADIAN)
-            yield f"    {_order_words(each)}: {amplitude} µrad, phase {uncertain(each.phase, each.phase_sigma)} rad"
+            shaft = "" if each.shaft == "input" else f" ({each.shaft})"
+            phase = uncertain(each.phase, each.phase_sigma)
+            yield f"    order {number(each.order, 6)}{shaft}: {amplitude} µrad, phase {phase} rad"
     if missing := [number(each.order, 5) for each in error.orders if not each.significant]:
         yield f"    within noise: orders {', '.join(missing)}"
     if error.lost_motion is not None:
@@ -211,10 +218,6 @@ def _ratio(error: TransmissionError) -> str:
     return f"{number(error.ratio.used, 9)} (measured {measured})"
 
 
-def _order_words(each: ErrorOrder) -> str:
-    return f"order {number(each.order, 6)}" + ("" if each.shaft == "input" else f" ({each.shaft})")
-
-
 def _ripple_lines(ripple: Ripple) -> Iterator[str]:
     per = "revolution" + (" of the input" if ripple.side == "input" else " of the output")
     yield f"  ripple in {ripple.column.replace('_', ' ')}, orders per {per}:"
@@ -228,7 +231,7 @@ def _ripple_lines(ripple: Ripple) -> Iterator[str]:
             text += f"; forward {quantity(line.forward, ripple.unit)}, backward {quantity(line.backward, ripple.unit)}"
         if parts := list(_parts(line, ripple.unit)):
             text += f"; parts: {', '.join(parts)}"
-        yield from textwrap.wrap(text, MAX_LINE_LETTERS, subsequent_indent="      ")
+        yield from textwrap.wrap(text, PAGE_WIDTH, subsequent_indent="      ")
     if not ripple.lines:
         yield "    no line stands out of the noise"
     if ripple.concluded:
@@ -314,3 +317,84 @@ def _csv(recording: Recording) -> bytes:
         path = Path(folder, "table.csv")
         recording.to_csv(path)
         return path.read_bytes()
+
+
+# ---- Figures ---------------------------------------------------------------------------------------------------------
+
+
+TURN_BINS = 60  # of a revolution, over which samples are averaged
+TIME_BLOCKS = 40  # of time, in the map
+ORDER_CELLS = 90  # of the order, in the map
+SHADE_LIMITS = (0.25, 0.45, 0.7, 1.0)  # of a cell, over the largest amplitude
+MIN_SPEED_SPREAD = 0.1  # of the speed, above which a map shows more than the spectrum
+MIN_BLOCK_SAMPLES = 8  # samples of a block that can show anything
+
+
+def spectrum_figure(ripple: Ripple, name: str) -> str:
+    """Return the figure of amplitude over order, with floor, threshold and lines."""
+    return figures.inline(
+        lambda figure: draw_spectrum(figure, ripple), (FIGURE_WIDTH, 3.0), name, "Amplitude of ripple over its order"
+    )
+
+
+def map_figure(ripple: Ripple, name: str) -> str:
+    """Return the figure of order against time; empty if the speed is constant, or no time is known."""
+    curves = ripple.curves
+    if "time" not in curves or not ripple.lines:
+        return ""
+    speed = np.abs(curves["speed"])
+    if float(np.std(speed)) < MIN_SPEED_SPREAD * float(np.mean(speed)):
+        return ""
+    drawn = [line.order for line in ripple.lines if line.kind != "joint" and line.order <= ripple.highest * 1.01]
+    highest = min(ripple.highest, 1.3 * max(drawn, default=ripple.highest))
+    order = np.linspace(ripple.lowest, highest, ORDER_CELLS)
+    wave = curves["series"] - curves["smooth"]
+    edges = np.linspace(0, len(wave), TIME_BLOCKS + 1).astype(int)
+    blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= MIN_BLOCK_SAMPLES]
+    rows = []
+    for block in blocks:
+        window = np.hanning(block.stop - block.start)
+        turned = np.exp(-1j * np.outer(order, curves["angle"][block]))
+        rows.append(2.0 / window.sum() * np.abs(turned @ (window * (wave[block] - wave[block].mean()))))
+    amplitude = np.array(rows)
+    middle = np.array([float(curves["time"][block].mean()) for block in blocks])
+    share = np.minimum(amplitude / np.quantile(amplitude, 0.995), 1.0)  # where friction turns over, all orders are large
+
+    def draw(figure: Figure) -> None:
+        axes, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
+        for low, high in zip(SHADE_LIMITS, (*SHADE_LIMITS[1:], 1.1), strict=True):
+            row, column = np.nonzero((share >= low) & (share < high))
+            axes.plot(middle[row], order[column], "s", color=LIGHT["measured"], alpha=low, markersize=2.6, markeredgewidth=0.0)
+        marks.curve(below, curves["time"], curves["speed"], color=LIGHT["ink"], linewidth=0.8)
+        axes.set_ylim(ripple.lowest, highest)
+        marks.label_axes(axes, f"order per revolution of the {ripple.side}", "1")
+        marks.label_axes(below, "speed", "rad/s", "time", "s")
+
+    return figures.inline(draw, (FIGURE_WIDTH, 3.6), name, "Amplitude of ripple over order and time")
+
+
+def error_figure(error: TransmissionError, name: str) -> str:
+    """Return the figure of the transmission error over the record, its orders and its residual."""
+    return figures.inline(
+        lambda figure: draw_error(figure, error), (FIGURE_WIDTH, 3.6), name, "Transmission error, kinematic error and residual"
+    )
+
+
+def turn_figure(error: TransmissionError, name: str) -> str:
+    """Return the figure of the kinematic error over a revolution of the input, with the residual of the samples."""
+    law = error.law
+    turn = np.linspace(0.0, 1.0, 400)
+    angle, residual = error.curves["input_angle"], error.curves["residual"]
+    bins = ((angle / tau) % 1.0 * TURN_BINS).astype(int) % TURN_BINS
+    counts = np.bincount(bins, minlength=TURN_BINS)
+    measured = np.bincount(bins, law.error(angle) + residual, TURN_BINS)[counts > 0] / counts[counts > 0]
+    middle = ((np.arange(TURN_BINS) + 0.5) / TURN_BINS)[counts > 0]
+
+    def draw(figure: Figure) -> None:
+        axes = figure.subplots()
+        axes.plot(middle, measured, "o", color=LIGHT["measured"], markersize=2.8, label="mean of the samples")
+        axes.plot(turn, law.error(tau * turn), color=LIGHT["model"], label="significant orders")
+        marks.label_axes(axes, "kinematic error", "rad", "revolution of the input", "1")
+        marks.legend(figure, axes)
+
+    return figures.inline(draw, (FIGURE_WIDTH, 2.8), name, "Kinematic error over a revolution of the input")

@@ -37,7 +37,8 @@ def verdict_sentence(found: Prediction) -> str:
     error = f"{error}, of {allowed} allowed"
     if found.changed:
         return f"{found.name} differs from {found.gear}, within the allowed error: {_changes(found)}; {error}."
-    return f"{found.name} agrees with {found.gear}: {error}; {_nothing_changed(found)}."
+    unchanged = "nothing changed significantly" if found.changes else "it does not determine whether anything changed"
+    return f"{found.name} agrees with {found.gear}: {error}; {unchanged}."
 
 
 def _changes(found: Prediction) -> str:
@@ -52,10 +53,6 @@ def _not_explained(found: Prediction) -> str:
     if not any(each.significant for each in found.changes):
         return why
     return f"{why}: {percent(found.error_with_changes / found.error)} of the error is left with all changes"
-
-
-def _nothing_changed(found: Prediction) -> str:
-    return "nothing changed significantly" if found.changes else "it does not determine whether anything changed"
 
 
 def change_in_words(change: PartChange) -> str:

@@ -36,7 +36,7 @@ from .running.plan import Deviation as Deviation, Plan as Plan, check as check, 
 from .virtual.printed import printed_gear as printed_gear
 from .virtual.render import Scene as Scene, render as render
 from .virtual.test import VirtualTest as VirtualTest, simulate_test as simulate_test
-from .vision.angle import Angles as Angles, Marker as Marker, camera_seen as camera_seen, measure_angles as measure_angles
+from .vision.angle import Angles as Angles, camera_seen as camera_seen, measure_angles as measure_angles
 from .vision.circle import Circle as Circle, geometric as geometric, kasa as kasa, pratt as pratt, taubin as taubin
 from .vision.image import Image as Image, as_image as as_image, read_image as read_image
-from .vision.marker import find_markers as find_markers
+from .vision.marker import Marker as Marker, find_markers as find_markers

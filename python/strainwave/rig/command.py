@@ -28,7 +28,7 @@ from strainwave.rig.influence.series import analyse_series, read_series, series_
 from strainwave.rig.loop import COLUMNS
 from strainwave.rig.reading.evaluation import EvaluationOptions, evaluate_paths
 from strainwave.rig.reading.measurement import PLAN
-from strainwave.rig.report.files import evaluation_files, loop_names
+from strainwave.rig.report.files import files_of, loop_names
 from strainwave.rig.report.influence import influence_report, summary as trend_lines
 from strainwave.rig.report.live import Terminal, live
 from strainwave.rig.report.page import summary
@@ -178,8 +178,6 @@ def measure(
     made = options.plan(bench)
     source = _source(camera, bench, made.steps, gear)
     with making(out), claiming(out):
-        _keep_plan(made, out)
-        written.append(out)
         done = _conduct(Console(stderr=True), out, bench, made, source, settling)
     if done < len(made.steps):
         print(f"stopped after step {done} of {len(made.steps)}; the same command goes on")
@@ -242,7 +240,7 @@ def analyse(
         units=pairs("--unit", unit, {name for pair in COLUMNS.values() for name in pair}),
     )
     found, read = evaluate_paths(paths, given)
-    files = evaluation_files(found, _provenance(read))
+    files = files_of(found, _provenance(read))
     write_folder(target, files)
     print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
@@ -360,7 +358,6 @@ def _seconds(option: str, value: float) -> float:
 
 
 def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> PictureSource:
-
     if camera == "virtual":
         return rehearsal(bench, steps, gear_named(gear))
     try:
@@ -369,26 +366,19 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Pict
         raise ValueError(f"--camera {camera}: {error}") from None
 
 
-def _keep_plan(made: Plan, out: Path) -> None:
-    """Write the plan into the test's folder, or refuse a plan that differs from that of an interrupted test."""
-
+def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: PictureSource, settling: Settling) -> int:
+    """Guide through the remaining steps, and return the count of steps done."""
     kept = inside(out, PLAN)
     if not kept.exists():
         write_steps(made.steps, kept)
     elif tuple(read_steps(kept)) != made.steps:
         raise ValueError(f"{kept} holds another plan; repeat the options that it was begun with, or give another --out")
-
-
-def _conduct(console: Console, out: Path, bench: Rig, made: Plan, source: PictureSource, settling: Settling) -> int:
-    """Guide through the remaining steps, and return the count of steps done."""
-
+    written.append(out)
     done, reader = done_before(made.steps, out), Reader(bench.camera)
     if not (out / "rig.toml").exists():
         write_rig(bench, out / "rig.toml")
     tasks = {stage.step.number: stage.task for stage in made.stages}
-    terminal = Terminal(
-        console, len(made.steps), lambda step, _: tasks[step.number], lambda step: torque_of_masses(bench, step)
-    )
+    terminal = Terminal(console, len(made.steps), tasks, lambda step: torque_of_masses(bench, step))
     terminal.before |= {step.number: reader(photograph_of(step, out), step) for step in done if step.image}
     load = source.load if isinstance(source, Virtual) else lambda number: None
     return len(conduct(made.steps, out, source, reader, terminal, settling, load))

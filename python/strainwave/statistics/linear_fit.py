@@ -13,7 +13,7 @@ An order is a number of cycles in each revolution of an angle. Its wave with amp
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -107,6 +107,23 @@ def solved(columns: Array, target: NDArray[Any]) -> NDArray[Any]:
     size = np.where(size > 0.0, size, 1.0)
     coefficients = np.linalg.lstsq(columns / size, target, rcond=MIN_SINGULAR_OF_COLUMNS)[0]
     return np.asarray((coefficients.T / size).T)
+
+
+def rms_left_out(columns: Array, target: Array, parts: Iterable[NDArray[np.bool_]]) -> float:
+    """Return the root mean square of what least squares leave of parts of the samples, each predicted from the others.
+
+    Args:
+        columns: shape (samples, n)
+        target: shape (samples,)
+        parts: True for the samples of a part, shape (samples,)
+
+    >>> time = np.arange(8.0)
+    >>> first = time < 4.0
+    >>> rms_left_out(np.stack([np.ones(8), time], axis=1), 3.0 * time + 2.0 * first, [~first])
+    2.0
+    """
+    left = [target[part] - columns[part] @ solved(columns[~part], target[~part]) for part in parts]
+    return float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
 
 
 def normal_inverse(columns: Array) -> Array:

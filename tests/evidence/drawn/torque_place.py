@@ -12,7 +12,7 @@ from tests.evidence.drawn.outcome import Outcome, compared
 
 STARTS = ("csg-14-100", "csg-17-100", "csg-20-100", "csg-25-100", "csg-32-100")
 RATIO = 100.0  # of the gear
-MAX_ERROR_RATIO = 1.1  # between the errors on data held out from two start sets
+MAX_ERROR_RATIO = 1.1  # between the errors on held-out data from two start sets
 
 
 def outcome(seed: int) -> Outcome:

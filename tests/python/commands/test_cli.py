@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import tomllib
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,7 @@ def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> N
     assert result.returncode == 0, result.stdout + result.stderr
     written = ["gear.toml", "numbers.csv", "report.html", "results.json"]
     assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == written
-    assert "error on data held out" in result.stdout
+    assert "error on held-out data" in result.stdout
     gear = sw.load(tmp_path / "mine" / "gear.toml")
     assert gear.friction_input.coulomb == pytest.approx(0.0208, abs=5e-4)
     assert gear.friction_input.viscous == pytest.approx(4.95e-4, rel=0.03)
@@ -124,7 +124,7 @@ def test_a_bad_gear_file_is_refused(tmp_path: Path, change: tuple[str, str], exp
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["identify", "hfuc-25-101", "table.csv"], ("hfuc-25-101", "hfuc-25-100")),
+        (["identify", "hfuc-25-101", "table.csv"], ("hfuc-25-101", "no ratio of 101, but 30, 50, 80, 100")),
         (["identify", "nowhere.toml", "table.csv"], ("nowhere.toml",)),
         (["identify", "hfuc-25-100", "nowhere.csv"], ("nowhere.csv",)),
         (["identify", "hfuc-25-100"], ("FILE",)),
@@ -195,6 +195,31 @@ def test_the_command_is_installed_and_its_exit_code_reaches_the_shell(tmp_path: 
     result = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False)
     assert (result.returncode, result.stdout) == (2, "")
     assert "nowhere.toml" in result.stderr
+
+
+@pytest.mark.slow("commands")
+@pytest.mark.parametrize("verb", ["show", "identify"])
+def test_lines_of_a_terminal_end_between_words_and_commands_stay_whole(verb: str, tmp_path: Path) -> None:
+    pty = pytest.importorskip("pty")
+    (tmp_path / "friction.csv").write_text(GOOD_TABLE)
+    words = {"show": ["show", "robot-joint"], "identify": ["identify", "hfuc-25-100", "friction.csv", "--out", "a-long-folder"]}
+    shown, terminal = pty.openpty()
+    process = subprocess.Popen(
+        [sys.executable, "-m", "strainwave", *words[verb]],
+        cwd=tmp_path, stdout=terminal, stderr=subprocess.DEVNULL, env={**os.environ, "COLUMNS": "80"},
+    )  # fmt: skip
+    os.close(terminal)
+    text = b""
+    with suppress(OSError):  # the end of a terminal
+        while part := os.read(shown, 65536):
+            text += part
+    os.close(shown)
+    assert process.wait(60) == 0
+    lines = text.decode().splitlines()
+    commands = [line for line in lines if line.startswith("  strainwave ")]
+    assert [line for line in lines if len(line) > 80 and line not in commands] == []
+    assert max(map(len, lines)) > 70
+    assert bool(commands) == (verb == "identify")
 
 
 @pytest.mark.slow("commands")

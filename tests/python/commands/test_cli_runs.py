@@ -195,7 +195,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         (["compare", "a.csv", "later.csv"], ("no time in common: 0 s to 1 s and 5 s to 6 s; shift the time of one",)),
         (["compare", "a.csv", "speed.csv"], ('column "torque": cannot convert "rad/s" to "N.m"; name the columns',)),
         (["compare", "joint.toml", "mine.toml", "--column", "x"], ("--column x: of gears and drives all",)),
-        (["compare", "hfuc-25-100", "hfuc-25-101"], ('"hfuc-25-101"', "hfuc-25-100")),
+        (["compare", "hfuc-25-100", "hfuc-25-101"], ('"hfuc-25-101"', "no ratio of 101, but 30")),
         (["show"], ("Missing argument 'name'",)),
         (["show", "nothing"], ('no set "nothing"',)),
         (["show", "joint.toml", "--run", "none.csv"], ("none.csv cannot be read",)),

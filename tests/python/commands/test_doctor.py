@@ -1,11 +1,13 @@
-"""The verb `doctor`: what is installed, and what is missing for what."""
+"""The verb `doctor`: what is installed, what is missing for what, and the kernels of this machine."""
 
 from __future__ import annotations
 
+import os
 import shutil
 import stat
 import subprocess
 import sys
+import time
 from importlib import metadata
 from pathlib import Path
 
@@ -13,9 +15,10 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 from strainwave.commands import doctor
-from strainwave.native import compilers
+from strainwave.native import compilers, folder
+from strainwave.native.folder import Record
 
-from tests.python.command import strainwave
+from tests.python.command import refused, strainwave
 
 EXTRAS = metadata.metadata("strainwave").get_all("Provides-Extra") or []
 HEAVY = {
@@ -145,3 +148,57 @@ def test_a_core_that_does_not_load_ends_with_exit_code_1_and_what_to_do(tmp_path
     last = done.stderr.splitlines()[-1]
     assert last.startswith("ImportError: the compiled core of strainwave does not load: ")
     assert "python3 dev.py demo" in last
+
+
+# ---- Kernels ---------------------------------------------------------------------------------------------------------
+
+
+def filled(kernels: Path) -> None:
+    kernels.mkdir(mode=0o700)
+    for age, drive, job, size in ((2e5, "load Pendulum", "run", 20_000), (7300.0, "control \x1b[31mPID", "all", 1_000_000)):
+        made = time.time() - age
+        path = folder.write(kernels, job * 16, b"", Record(drive, job, "g++", 3.96, made, size, ""))
+        os.utime(path, (made, made))
+
+
+def test_kernels_are_listed_the_last_used_first(kernels: Path, tmp_path: Path) -> None:
+    filled(kernels)
+    result = strainwave("doctor", "kernels", folder=tmp_path)
+    assert (result.returncode, result.stderr) == (0, "")
+    assert result.stdout.splitlines() == [
+        "drive             job     size  compiled in   age",
+        "control  [31mPID  all  1.00 MB  4.0 s by g++  2 h",
+        "load Pendulum     run  0.02 MB  4.0 s by g++  2 d",
+        "",
+        f"2 kernels, 1.02 MB, in {kernels}",
+    ]
+
+
+def test_kernels_are_removed(kernels: Path, tmp_path: Path) -> None:
+    filled(kernels)
+    assert strainwave("doctor", "kernels", "--clear", folder=tmp_path).stdout == f"removed 2 kernels from {kernels}\n"
+    assert not list(kernels.iterdir())
+    assert strainwave("doctor", "kernels", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
+
+
+def test_without_a_cache_nothing_is_made(kernels: Path, tmp_path: Path) -> None:
+    assert strainwave("doctor", "kernels", folder=tmp_path).stdout == f"0 kernels, 0.00 MB, in {kernels}\n"
+    assert strainwave("doctor", "kernels", "--clear", folder=tmp_path).stdout == f"removed 0 kernels from {kernels}\n"
+    assert not kernels.exists()
+
+
+def test_kernels_that_are_switched_off_are_said_to_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("STRAINWAVE_KERNELS", "off")
+    assert (
+        strainwave("doctor", "kernels", folder=tmp_path).stdout
+        == "no kernel is used: they are switched off by STRAINWAVE_KERNELS\n"
+    )
+
+
+def test_a_folder_that_cannot_be_trusted_is_refused(kernels: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    filled(kernels)
+    kernels.chmod(0o777)
+    for arguments in (["doctor", "kernels"], ["doctor", "kernels", "--clear"]):
+        refused(tmp_path, arguments, f"other users may write to {kernels}")
+    monkeypatch.setenv("STRAINWAVE_KERNELS", "kernels")
+    refused(tmp_path, ["doctor", "kernels"], "must be off or an absolute path")

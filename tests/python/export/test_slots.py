@@ -153,7 +153,7 @@ def test_the_reaction_of_the_kinematic_error_is_that_of_the_current_signature() 
     """3e-4 rad at order 2 under 20 N.m take 240 mA at 0.05 N.m/A; 0.8e-4 and 0.5e-4 rad at orders 1 and 4 take 32 and 80 mA."""
     error = sw.kinematic_error.Fourier(order=[1.0, 2.0, 4.0], amplitude=[0.8e-4, 3e-4, 0.5e-4], phase=[0.0, 0.0, 0.0])
     gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=100.0), kinematic_error=error)
-    found = sw.export.slot(with_torque_constant(gear), "anticogging-map", unit="A", load=20.0, points=128)
+    found = sw.export.slot(with_torque_constant(gear), "anticogging-map", unit="A", torque=20.0, points=128)
     angle, current = table(found)
     lines = {order: 2.0 / angle.size * np.sum(current * np.exp(-1j * order * angle)) for order in (1, 2, 4)}
     assert [lines[order].real for order in (1, 2, 4)] == pytest.approx([-0.032, -0.240, -0.080])
@@ -164,7 +164,7 @@ def test_the_reaction_of_the_kinematic_error_is_that_of_the_current_signature() 
 def test_what_does_not_repeat_with_the_input_is_lost_from_a_map() -> None:
     error = sw.kinematic_error.Fourier(order=[2.0, 2.02], amplitude=[3e-4, 1e-4], phase=[0.3, 0.0])
     gear = PLAIN.replace(kinematic_error=error)
-    found = sw.export.slot(gear, "anticogging-map", load=20.0, points=256)
+    found = sw.export.slot(gear, "anticogging-map", torque=20.0, points=256)
     assert value(found, "amplitude") == pytest.approx(20.0 * 3e-4 * 2.0, rel=1e-3)
     assert loss(found).rms == pytest.approx(20.0 * 1e-4 * 2.02 / np.sqrt(2.0), rel=1e-3)
 
@@ -176,7 +176,7 @@ def test_a_map_has_friction_of_its_sense_and_cogging() -> None:
         supply_voltage=48.0, current_limit=10.0, cogging_torque=0.02, cogging_order=6.0,
     )  # fmt: skip
     drive = driven(sw.Gear(kinematics=KINEMATICS, friction_input=law), motor)
-    there, back = (sw.export.slot(drive, "anticogging-map", load=0.0, speed=speed) for speed in (0.002, -0.002))
+    there, back = (sw.export.slot(drive, "anticogging-map", torque=0.0, speed=speed) for speed in (0.002, -0.002))
     angle, forward = table(there)
     _, backward = table(back)
     assert forward - backward == pytest.approx(2.0 * 0.05 * 0.2 * _cyclic(law, angle), abs=1e-12)
@@ -218,7 +218,7 @@ def test_a_torque_offset_follows_a_motion_that_is_given_and_the_rating_of_the_se
 def test_what_is_assumed_is_remarked() -> None:
     for name in OF_FRICTION:
         assert any("friction is assumed" in remark for remark in sw.export.slot("csg-20-100", name).remarks)
-    found = sw.export.slot("robot-joint", "anticogging-map", load=20.0, unit="A")
+    found = sw.export.slot("robot-joint", "anticogging-map", torque=20.0, unit="A")
     assert any("both encoders" in remark for remark in found.remarks)
     assert any("amplitudes of the phases" in remark for remark in found.remarks)
 
@@ -240,11 +240,11 @@ def test_what_is_assumed_is_remarked() -> None:
         ("robot-joint", "torque-offset", {"rated_torque": 1.0, "period": 10.0}, "period = 10 s must divide the motion"),
         ("robot-joint", "torque-offset", {"rated_torque": 1.0, "period": 1e-7}, "into 1 to 1000000 parts"),
         ("robot-joint", "speed-table", {"speed": float("inf")}, "speed"),
-        ("robot-joint", "anticogging-map", {"load": 1.0, "points": 5000}, "points"),
+        ("robot-joint", "anticogging-map", {"torque": 1.0, "points": 5000}, "points"),
         ("csg-20-100", "torque-offset", {"rated_torque": 1.0}, r"no \[motor\] and no \[load\]"),
-        ("robot-joint", "anticogging-map", {}, "load is needed"),
-        ("csg-20-100", "anticogging-map", {"load": 0.0}, "the map is zero"),
-        ("robot-joint", "anticogging-map", {"load": 1.0, "side": "output"}, "belongs to the input"),
+        ("robot-joint", "anticogging-map", {}, "torque is needed"),
+        ("csg-20-100", "anticogging-map", {"torque": 0.0}, "the map is zero"),
+        ("robot-joint", "anticogging-map", {"torque": 1.0, "side": "output"}, "belongs to the input"),
         ("robot-joint", "speed-table", {"side": "output", "unit": "A"}, "belongs to the input"),
         ("robot-joint", "speed-table", {"points": 7}, "must be even"),
         ("robot-joint", "speed-table", {"points": 2}, "points"),
@@ -276,7 +276,7 @@ def test_side_and_sign_are_the_first_remarks(side: str) -> None:
 @pytest.mark.slow("export")
 @pytest.mark.parametrize("name", SLOTS)
 def test_the_command_writes_a_slot(name: str, tmp_path: Path) -> None:
-    needs = {"torque-offset": {"rated_torque": 0.9}, "anticogging-map": {"load": 20.0}}.get(name, {})
+    needs = {"torque-offset": {"rated_torque": 0.9}, "anticogging-map": {"torque": 20.0}}.get(name, {})
     options = [word for option, number in needs.items() for word in (f"--{option.replace('_', '-')}", number)]
     done = strainwave("export", "slot", "robot-joint", name, *options, "--out", "slot", folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -302,7 +302,7 @@ def test_the_command_prints_twelve_rows_of_a_table_at_most(tmp_path: Path) -> No
 
 
 def test_a_loss_relative_to_friction_names_it(tmp_path: Path) -> None:
-    for name, option in (("torque-offset", ("--rated-torque", 0.9)), ("anticogging-map", ("--load", 20.0))):
+    for name, option in (("torque-offset", ("--rated-torque", 0.9)), ("anticogging-map", ("--torque", 20.0))):
         done = strainwave("export", "slot", "robot-joint", name, *option, "--out", name, folder=tmp_path)
         assert " % of the friction (" in done.stdout
         (first, *_) = json.loads((tmp_path / name / "export.json").read_text())["losses"]
@@ -311,7 +311,7 @@ def test_a_loss_relative_to_friction_names_it(tmp_path: Path) -> None:
 
 
 def test_the_command_names_its_options(tmp_path: Path) -> None:
-    refused(tmp_path, ["export", "slot", "robot-joint", "anticogging-map"], "--load is needed")
+    refused(tmp_path, ["export", "slot", "robot-joint", "anticogging-map"], "--torque is needed")
     refused(tmp_path, ["export", "slot", "robot-joint", "torque-offset"], "--rated-torque is needed")
     refused(tmp_path, ["export", "slot", "robot-joint", "speed-table", "--travel", "1"], "travel is not used by the slot")
     refused(tmp_path, ["export", "slot", "robot-joint", "speed-table", "--points", "8.5"], "--points")
@@ -325,8 +325,8 @@ def test_the_command_names_its_options(tmp_path: Path) -> None:
             {"points": 8},
             "points is not used by the slot coulomb-viscous, only by speed-table, anti",
         ),
-        ("anticogging-map", {"load": 1.0, "threshold": 0.1}, "threshold is not used by the slot anticogging-map"),
-        ("torque-offset", {"load": 1.0}, "load is not used by the slot torque-offset"),
+        ("anticogging-map", {"torque": 1.0, "threshold": 0.1}, "threshold is not used by the slot anticogging-map"),
+        ("torque-offset", {"torque": 1.0}, "torque is not used by the slot torque-offset"),
         ("torque-offset", {"motion": sw.scenario.ramp(1.0, 1.0), "travel": 1.0}, "travel is that of a motion to and fro"),
         ("speed-table", {"members": 40}, "members is not used by the slot speed-table, only by viscous-coulomb-scale"),
     ],

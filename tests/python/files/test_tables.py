@@ -17,7 +17,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
-from strainwave.files.tables import FORMATS, LISTED, open_table
+from strainwave.files.tables import FORMATS, LISTED_FORMATS, open_table
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
 from tests.support.work import calls
@@ -396,7 +396,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
 
 def test_an_unknown_suffix_is_refused_with_those_of_all_formats(tmp_path: Path) -> None:
     path = tmp_path / "run.doc"
-    *others, last = [suffix for each in LISTED for suffix in each.suffixes]
+    *others, last = [suffix for each in LISTED_FORMATS for suffix in each.suffixes]
     assert {".csv", ".parquet", ".dat", ".mat"} < {*others, last}
     for read in (Recording.read, Recording.header):
         with pytest.raises(ValueError, match=exactly(f'{path}: suffix ".doc" is not known; use {", ".join(others)} or {last}')):
@@ -404,7 +404,7 @@ def test_an_unknown_suffix_is_refused_with_those_of_all_formats(tmp_path: Path) 
 
 
 def test_no_suffix_belongs_to_two_formats() -> None:
-    assert len(FORMATS) == sum(len(each.suffixes) for each in LISTED)
+    assert len(FORMATS) == sum(len(each.suffixes) for each in LISTED_FORMATS)
     assert all(suffix == suffix.lower() and suffix.startswith(".") for suffix in FORMATS)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from strainwave.identification.candidates import motion_model
-from strainwave.identification.checks import comparisons, sizes, unexplained
+from strainwave.identification.checks import comparisons, logs, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
 from strainwave.identification.kinds import along_motion
@@ -33,8 +33,8 @@ def percent(share: float) -> str:
         f"differ by more than {NUMBERS[int(combined_parameter.MAX_DISTANCE)]} standard deviations",
         f"more is left than {percent(unexplained.MAX_SHARE_OF_MOTION)} of an angle, a speed or a loop, "
         f"{percent(unexplained.MAX_SHARE_OF_TORQUE)} of a friction torque or a current, "
-        f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on data held out",
-        f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of what varies",
+        f"or {percent(unexplained.MAX_SHARE_OF_PRESLIDING)} of a presliding loop on held-out data",
+        f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of the signal",
         f"White noise repeats as well in 1 of {1.0 / unexplained.MAX_CHANCE_OF_SHAPE:g} records",
         f"A shape of {100.0 * unexplained.MIN_SHARE_OF_SHAPE:g} to {percent(unexplained.MAX_SHARE_OF_SHAPE)} is a remark",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
@@ -47,12 +47,14 @@ def percent(share: float) -> str:
         f"the gravity of the load is more than {comparisons.MAX_GRAVITY_OF_RATING:g} times the largest torque in the ratings",
         f"the input would turn faster than {sizes.MAX_INPUT_SPEED:g} rad/s",
         f"with {percent(comparisons.GAIN_SIGMA)} for the gain of two sensors",
-        f"increased by {percent(comparisons.REPEATABILITY['friction_input'])} of friction at the input, "
-        f"{percent(comparisons.REPEATABILITY['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
+        f"increased by {percent(comparisons.RUN_TO_RUN_SPREADS['friction_input'])} of friction at the input, "
+        f"{percent(comparisons.RUN_TO_RUN_SPREADS['load'])} of the load and {percent(comparisons.GAIN_SIGMA)} of other numbers",
         f"less than {percent(motion_log.MIN_SHARE_OF_A_DIRECTION)} of the samples move the other way",
         f"if less than {percent(round(0.5 - 0.5 * np.sqrt(1.0 - motion_model.MIN_OWN_SHARE**2), 3))} move the other way",
-        f"a probability of {percent(motion_model.MAX_CHANCE)} at most",
+        f"a probability of {percent(motion_model.MAX_CHANCE_OF_WAVE)} at most",
         f"uncertain by {percent(motion_model.BIAS_IN_FULL_BAND)} at least",
+        f"a recorded speed is more than {logs.MAX_SPEED_FACTOR:g} times the slope of its angle",
+        f"differs from that of the gear by a factor of more than {logs.MAX_RATIO_FACTOR:g} over their correlation",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

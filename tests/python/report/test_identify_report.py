@@ -84,7 +84,7 @@ def test_the_verdict_comes_first_then_files_measured_against_predicted_then_para
     order = (
         "5 files: 3 determine 2 parameters, 1 contains the measurement of another, 1 is refused; the one check passed.",
         "Files that cannot be used", "give --column", "Friction over speed", "from warm.csv", "from the start set HFUC-20-80",
-        "Files against the model",
+        "Measured and modelled",
         "Estimates more than 3 σ apart", "13 σ apart.",  # 0.03 over the root of 0.001² + 0.002²
         "By the check “agreement of files” no two files",
     )  # fmt: skip
@@ -134,7 +134,7 @@ def test_the_error_on_data_held_out_stands_beside_plain_least_squares(found: Ide
         "Predicting the mean1.2 A100 %",
     ):
         assert expected in text, expected
-    assert "; RMS error on data held out 0.281 A (plain least squares 0.363 A), 23 % of what varies; " in text_of(html)
+    assert "; RMS error on held-out data 0.281 A (plain least squares 0.363 A), 23 % of the signal; " in text_of(html)
 
 
 @pytest.mark.slow("report")

@@ -70,7 +70,7 @@ def test_any_drive_can_be_shown(drive: sw.Drive) -> None:
 
 def test_how_well_a_number_is_known_is_said_behind_its_source() -> None:
     known = SET.replace(sources={**SET.sources, "gear.stiffness.k": Entry("torsion loop", spread=0.3, uncertainty=12.0)})
-    assert line_of(listing(known), "k").endswith("8000  N.m/rad  torsion loop, spread 30 %, ± 12 N.m/rad")
+    assert line_of(listing(known), "k").endswith("8000 ± 12  N.m/rad  torsion loop, spread 30 %")
 
 
 def test_the_modes_are_those_of_the_closed_form() -> None:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import html as markup
 import re
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -12,8 +15,10 @@ from matplotlib.figure import Figure
 from strainwave.drawing import marks
 from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.identification.identify import Identified
+from strainwave.identification.joints import Joints
 from strainwave.report import figures
 from strainwave.report.identify import identify_report
+from strainwave.report.joints import joints_report
 from strainwave.report.provenance import Provenance
 
 from tests.python.report.measured import HOSTILE, swing
@@ -120,3 +125,46 @@ def test_a_figure_is_as_wide_as_its_box(html: str) -> None:
     assert of_figures
     assert all("width: 100%" in rule and "min-width" not in rule for rule in of_figures)
     assert not any({"width", "height"} & svg.attributes.keys() for svg in Page(html).root.find("svg"))
+
+
+WIDEST = """<script>
+onload = () => {
+  const frame = document.querySelector("iframe"), page = frame.contentDocument, width = frame.clientWidth, beyond = [];
+  page.querySelectorAll("details").forEach(each => each.open = true);
+  for (const each of page.body.querySelectorAll("*")) {
+    const place = each.parentElement.closest(".scroll, svg");
+    if (!place && each.getBoundingClientRect().right > width + 1) beyond.push(each.outerHTML.slice(0, 99));
+  }
+  document.body.innerHTML = "<pre></pre>"; document.querySelector("pre").textContent = `${width}: ${beyond}`;
+};
+</script>"""
+
+
+def beyond_the_edge(page: str, width: int, folder: Path) -> str:
+    """The elements of a page that a browser draws beyond the right edge of a window of so many pixels."""
+    (folder / "report.html").write_text(page, encoding="utf-8")
+    frame = f'<iframe src="report.html" style="border:0;width:{width}px;height:900px"></iframe>'
+    (folder / "frame.html").write_text(f"<!doctype html><body>{frame}{WIDEST}</body>", encoding="utf-8")
+    browser = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if browser is None:
+        pytest.skip("no Chromium is installed")
+    options = ["--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files", "--virtual-time-budget=5000"]
+    command = [browser, *options, f"--window-size={width + 200},900", "--dump-dom", (folder / "frame.html").as_uri()]
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True).stdout
+    found = re.search(r"<pre>(\d+): (.*?)</pre>", shown, re.DOTALL)
+    assert found is not None
+    assert int(found[1]) == width
+    return markup.unescape(found[2])
+
+
+@pytest.mark.slow("report")
+@pytest.mark.parametrize("width", [390, 1280])
+def test_a_browser_draws_nothing_beyond_the_edge_of_a_phone_or_a_screen(
+    width: int, from_friction: Identified, tmp_path: Path
+) -> None:
+    """Twelve joints have a table that is wider than a screen: it scrolls in itself."""
+    many = Joints({str(joint): from_friction for joint in range(12)}, {}, {})
+    for page in (identify_report(from_friction), joints_report(many)):
+        assert beyond_the_edge(page, width, tmp_path) == ""
+    wide = "<!doctype html><body><p style='width:2000px'>too wide</p></body>"
+    assert beyond_the_edge(wide, width, tmp_path).startswith("<p style=")

@@ -35,7 +35,7 @@ SLOW_SHARES = (0.1, 0.5)  # of the usual speed, at which friction may fall
 END_OF_RIGID, END_OF_FRICTION = 3, 9  # of the columns of a joint by itself: inertia and gravity, offset and friction
 PLAIN_BASE = (0, 3, 4, 5)  # of these columns, those that are fitted together with gravity: inertia, offset, Coulomb, viscous
 MIN_INDEPENDENT_WAVE = 0.02  # of the size of a sine or cosine of gravity, that those before it must not explain
-MIN_ROWS = 50  # in the pass band before the last stretch, by which terms are found
+MIN_ROWS_OF_TERMS = 50  # in the pass band before the last stretch, by which terms are found
 TERMS_AT_ONCE = 64  # that are filtered
 MAX_TERMS = 40  # terms
 MAX_IDLE_TERMS = 4  # terms that may bring nothing before the search ends
@@ -47,9 +47,9 @@ ACROSS, RELATIONS = 0, (0, 1, -1)  # axes at right angles; besides, parallel one
 MAX_BEAM_WIDTH = 6  # parts of the chain of each length that are made longer
 MAX_SUMS = 30  # of a part of the chain
 MIN_GAIN_PER_SUM = 0.02  # relative decrease of the error by each sum of angles (assumed)
-MAX_ROWS = 1500  # of the motion, by which parts are compared
-FOLD_COUNT = 3  # stretches of the motion, each predicted by the others
-MIN_SINGULAR = 1e-4  # singular values below this share of the largest are taken as zero
+MAX_ROWS_OF_CHAIN = 1500  # of the motion, by which parts are compared
+CHAIN_FOLDS = 3  # stretches of the motion, each predicted by the others
+MIN_SINGULAR_OF_CHAIN = 1e-4  # singular values below this share of the largest are taken as zero
 
 
 def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Array], joint: str = "") -> Iterator[MotionLog]:
@@ -71,7 +71,7 @@ def coupled(log: MotionLog, drive: Drive, time: Array, others: Mapping[str, Arra
     torque = ratio * log.measured[0] / per_torque(drive, log.effort) - own.filtered(log.extra[np.newaxis])[0]
     base = own.filtered(_alone(itself)).T
     known = own.rows < int(np.argmax(stretches(log)[-1]))
-    if np.count_nonzero(known) < MIN_ROWS:
+    if np.count_nonzero(known) < MIN_ROWS_OF_TERMS:
         return
     gravity = _gravity(arm, own, torque[known], base[known], known)
     if gravity:
@@ -368,7 +368,7 @@ def best_chain(torque: Array, base: Array, wave: Callable[[Sum], Array], joint: 
     Returns:
         the part; None if none predicts better than the base
     """
-    every = slice(None, None, -(-len(torque) // MAX_ROWS))
+    every = slice(None, None, -(-len(torque) // MAX_ROWS_OF_CHAIN))
     torque, base = torque[every], base[every]
     waves, costs = dict[Sum, Array](), dict[tuple[Sum, ...], float]()
 
@@ -393,10 +393,10 @@ def _error(torque: Array, columns: Array) -> float:
     """Return the root mean square error of least squares over stretches, each predicted by the others."""
     columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     squares = 0.0
-    for stretch in np.array_split(np.arange(len(torque)), FOLD_COUNT):
+    for stretch in np.array_split(np.arange(len(torque)), CHAIN_FOLDS):
         others = np.ones(len(torque), bool)
         others[stretch] = False
-        shares = np.linalg.lstsq(columns[others], torque[others], rcond=MIN_SINGULAR)[0]
+        shares = np.linalg.lstsq(columns[others], torque[others], rcond=MIN_SINGULAR_OF_CHAIN)[0]
         squares += float(np.sum((torque[stretch] - columns[stretch] @ shares) ** 2))
     return float(np.sqrt(squares / len(torque)))
 

@@ -22,11 +22,11 @@ Array = NDArray[np.float64]
 
 TRAINING_SHARE = 0.7  # of the record; the rest, later in time, validates
 MAX_STEPS_AT_FIRST = 40_000  # of the simulation; the beginning of a longer log is fitted first, which saves time
-MAX_ROUNDS = 4  # of fits, in which breakaway follows Coulomb's torque
+MAX_BREAKAWAY_ROUNDS = 4  # of fits, in which breakaway follows Coulomb's torque
 BREAKAWAY_TOLERANCE = 1e-3  # relative, between breakaway and the torque that it follows
 MAX_HALVINGS = 12  # of a friction that the command does not overcome
 MAX_SLOPE = 0.1  # of each harmonic over that of the rigid motion: no gear has a larger one (assumed)
-ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
+TYPICAL_ORDERS = (1.0, 2.0, 4.0)  # of the input rotation, the harmonics found in every gear measured so far
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +60,7 @@ def fit_log(log: DriveLog, drive: Drive, free: list[str]) -> LogFit:
     is_long = log.time[-1] > MAX_STEPS_AT_FIRST * log.dt
     near = fit(drive, log.beginning(MAX_STEPS_AT_FIRST / 2 * log.dt), free).model if is_long else drive
     log_fit = fit(near, log, free, training=training)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(MAX_BREAKAWAY_ROUNDS):
         law, wanted = log_fit.gear.friction_input, _breakaway(log_fit.gear, drive.gear)
         if wanted is None or abs(innermost(law).breakaway - wanted) <= BREAKAWAY_TOLERANCE * wanted:
             break
@@ -159,8 +159,8 @@ def _harmonics(log: DriveLog, ratio: float) -> kinematic_error.Fourier:
     output_angle = log.measured[log.channels.index("output_angle")]
     angle = input_angle - input_angle[0]
     error = angle / ratio - (output_angle - output_angle[0])
-    columns = np.column_stack((np.ones_like(angle), angle, order_waves(angle, ORDERS)))
+    columns = np.column_stack((np.ones_like(angle), angle, order_waves(angle, TYPICAL_ORDERS)))
     amplitude, phase = amplitudes_of(solved(columns, error)[2:])
-    largest = MAX_SLOPE / (abs(ratio) * np.array(ORDERS))
+    largest = MAX_SLOPE / (abs(ratio) * np.array(TYPICAL_ORDERS))
     amplitude = np.where(amplitude < largest, amplitude, 1e-3 * largest)  # no error of a gear: something else is wrong
-    return kinematic_error.Fourier(order=ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())
+    return kinematic_error.Fourier(order=TYPICAL_ORDERS, amplitude=amplitude.tolist(), phase=phase.tolist())

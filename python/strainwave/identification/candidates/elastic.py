@@ -42,7 +42,7 @@ from strainwave.identification.experiments.drive_log import MAX_DRIVEN_CUTOFF_SH
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion import motion_of, spectra
 from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, transmitted_torque
-from strainwave.identification.fitting.fit import Fit, fit_of, problem_of
+from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.linear_fit import linear_fit, order_waves, solved
@@ -54,14 +54,13 @@ Array = NDArray[np.float64]
 TIME_BLOCKS = 10  # of a log, every second of which is held out while models are compared
 COMPARED_TIME = 10.0  # s, of the part of a log on which models are compared
 MAX_TIME = 40.0  # s, of a log to which the chosen model is fitted
-MAX_STEP = 1e-3  # s, of the simulation
+MAX_STEP_OF_OUTPUT = 1e-3  # s, of the simulation
 MAX_PHASE_STEP = 0.25  # rad, of the vibration of the output in a step, which changes its period by 3e-5 (RK4)
 MIN_TWIST_SIGMA = 3.0  # standard deviations of the twist under load
-MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
-MAX_RELATIVE_COST_AT_LAST = 1e-4  # likewise, of the last fit: smaller steps move no number by a tenth of its deviation
-MAX_TRIALS = 15  # steps of a fit
+MAX_RELATIVE_COST_AT_LAST = 1e-4  # of a step of the last fit: smaller steps move no number by a tenth of its deviation
+MAX_STEPS_OF_FIT = 15  # steps of a fit
 MAX_START_ERROR = 1.2  # times the smallest held-out error of the regressions: models beyond are not simulated
-GAIN_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
+HELD_OUT_BLOCKS = 20  # of the data held out, over which the gain of a model scatters
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
 MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more are an error of the model
 SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
@@ -71,14 +70,14 @@ CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
-GRAVITY = "load.gravity_torque"
+GRAVITY_PATH = "load.gravity_torque"
 FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
-WAVES = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
+WAVE_PATHS = ("gear.kinematic_error.amplitude", "gear.kinematic_error.phase")
 Rows = NDArray[np.bool_]
 
-MAX_ELEMENTS = 2
-SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
-MAX_ROWS = 3000  # of the regression
+MAX_ELASTIC_ELEMENTS = 2
+TRIED_SLIPS = np.geomspace(0.02, 0.9, 24)  # of the largest twist: twists of slip that are tried
+MAX_ROWS_OF_REGRESSION = 3000  # of the regression
 MIN_START_DAMPING = 1e-3  # of critical damping: from where a fit can start
 UNREACHED_TORQUE = 1e6  # N.m: a knee there does nothing
 MIN_TORQUE_SHARE = 2e-3  # of the largest torque: an element that carries less is none
@@ -133,7 +132,7 @@ def fit_elastic(
     gear = drive.gear.replace(friction_input=FRICTIONLESS, friction_mesh=FRICTIONLESS, kinematic_error=law)
     rigid = transmitted_torque(log, drive), late * log.motion.speed / gear.kinematics.ratio
     blocks = _training_blocks(log.motion.time)
-    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY)
+    starts = elastic_starts(recording, log, drive.replace(gear=gear), *rigid, blocks, by_gravity=scale == GRAVITY_PATH)
     if abs(late) < MAX_DELAY_SAMPLES * log.motion.step:
         late_output = _fitted(recording, log, starts, scale, reach, delayed=True)
         delay = next(each.value for each in late_output.fit.estimates if each.path == DELAY)
@@ -194,7 +193,7 @@ def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bo
     """
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
-    step = min(MAX_STEP, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
+    step = min(MAX_STEP_OF_OUTPUT, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
     torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
     output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
     initial = {"torque": torque, "output_speed": float(output.speed[0])}
@@ -250,7 +249,7 @@ class _TriedModel(ComparedByFields):
 
     def predicts_as_well_as(self, other: _TriedModel) -> bool:
         """True if its squared residuals are larger by no more than chance over the record makes, or by nearly nothing."""
-        losses = np.array([each.mean() for each in np.array_split(self.left**2 - other.left**2, GAIN_BLOCKS)])
+        losses = np.array([each.mean() for each in np.array_split(self.left**2 - other.left**2, HELD_OUT_BLOCKS)])
         by_chance = self.error <= MAX_CHANCE_ERROR * other.error and sigmas_of_gain(losses) < MIN_GAIN_SIGMA
         return MAX_RELATIVE_ERROR * self.error <= other.error or by_chance
 
@@ -348,7 +347,7 @@ def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel
     """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
-        problem, x = _solved(log, drive, free, training, MAX_RELATIVE_COST)
+        problem, x = _solved(log, drive, free, training, ROUGH_TOLERANCE)
         fitted: Any = problem.records[0].model(x)
         ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
@@ -372,7 +371,7 @@ def _solved(
 ) -> tuple[Problem, Array]:
     """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it."""
     problem = problem_of(plan(drive, [""], free), drive, [log], [training])
-    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_TRIALS)
+    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_STEPS_OF_FIT)
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
@@ -381,7 +380,7 @@ def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:
     beyond = ("k3", "t2") if isinstance(spring, stiffness.ThreeSegment) and spring.t2 > reach else ()
     kept = {f"{SPRING}{name}" for name in beyond} | {scale}
     for path, *_ in _core.parameters(drive):
-        if path.startswith((SPRING, MEMORY, *WAVES, "gear.damping", "load.")) and path not in kept:
+        if path.startswith((SPRING, MEMORY, *WAVE_PATHS, "gear.damping", "load.")) and path not in kept:
             yield path
 
 
@@ -431,13 +430,13 @@ def elastic_starts(
     always = np.column_stack([rate, *scaled, *(-each for each in scaled)])
     needed = torque + load * (acceleration - motion.acceleration / ratio)
     rows = np.flatnonzero(used)
-    rows = rows[:: -(-len(rows) // MAX_ROWS)]
+    rows = rows[:: -(-len(rows) // MAX_ROWS_OF_REGRESSION)]
     training = blocks[rows]
-    memory = np.column_stack(unit_traces(twist, half * SLIPS))
+    memory = np.column_stack(unit_traces(twist, half * TRIED_SLIPS))
     starts = []
-    for count in range(MAX_ELEMENTS + 1):
+    for count in range(MAX_ELASTIC_ELEMENTS + 1):
         elements = _elements(memory[rows], half, count)
-        for spring in SPRINGS:
+        for spring in TRIED_SPRINGS:
             libraries = [elements, spring.library(twist[rows], half, drive.gear)]
             try:
                 (answer, *_) = solve(
@@ -480,7 +479,7 @@ def _two_segments(put: Callable[[Gear, Array], Gear]) -> Callable[[Gear, Array],
     return put_as_three
 
 
-SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
+TRIED_SPRINGS = (LINEAR, CUBIC, _TwoSegments(), THREE_SEGMENT)
 
 
 def _elements(torques: Array, half: float, count: int) -> Library:
@@ -488,13 +487,13 @@ def _elements(torques: Array, half: float, count: int) -> Library:
 
     def choice(places: tuple[int, ...]) -> Choice:
         def put(gear: Gear, weights: Array) -> Gear:
-            every = [(float(k), float(k) * half * float(SLIPS[place])) for k, place in zip(weights, places, strict=True)]
+            every = [(float(k), float(k) * half * float(TRIED_SLIPS[place])) for k, place in zip(weights, places, strict=True)]
             largest = float(np.abs(torques).max()) * max((k for k, _ in every), default=0.0)
             return gear.replace(hysteresis=maxwell([each for each in every if each[1] > MIN_TORQUE_SHARE * largest]))
 
         return Choice(places, put)
 
-    return Library(torques, tuple(choice(places) for places in combinations(range(len(SLIPS)), count)))
+    return Library(torques, tuple(choice(places) for places in combinations(range(len(TRIED_SLIPS)), count)))
 
 
 def _predicted(answer: Answer, libraries: list[Library], always: Array) -> Array:

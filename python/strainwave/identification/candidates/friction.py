@@ -26,6 +26,7 @@ from strainwave.identification.candidates.steady_shapes import (
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import EXACT_TOLERANCE, Fit, fit, problem_of
 from strainwave.identification.fitting.unknowns import Estimate, plan
+from strainwave.statistics.linear_fit import rms_left_out
 from strainwave.statistics.residuals import chance_of_gain
 from strainwave.statistics.scale import robust_sigma
 
@@ -37,9 +38,9 @@ MIN_OUTLIER_SIGMA = 6.0  # robust standard deviations off, beyond noise
 MIN_ROWS_FOR_OUTLIERS = 12
 MAX_OUTLIER_SHARE = 0.1  # of the rows
 MAX_ERROR_LEFT = 0.5  # of the error, without the outliers
-MAX_PASSES = 3  # as outliers hide behind larger ones
+MAX_OUTLIER_PASSES = 3  # as outliers hide behind larger ones
 MAX_ROUNDING = 1e-7  # of the largest torque: smaller errors are those of rounding and of the end of a fit
-MAX_CHANCE = 0.01  # probability that chance explains as much as more numbers do
+MAX_CHANCE_OF_NUMBERS = 0.01  # probability that chance explains as much as more numbers do
 MAX_RELATIVE_SIGMA = 0.5  # of a number that a law determines
 STEADY_NUMBERS = ("coulomb", "breakaway", "stribeck_speed", "viscous")  # mean the same in every law
 
@@ -225,7 +226,7 @@ def _without_outliers(table: FrictionTable, gear: Gear) -> tuple[list[tuple[Shap
     """Return every law fitted to the rows without outliers, and these rows; to all if that does not halve the error."""
     whole = tried = _tried(table, gear)
     everything = trusted = np.ones(len(table.speed), bool)
-    for _ in range(MAX_PASSES):
+    for _ in range(MAX_OUTLIER_PASSES):
         _, best = _chosen(tried)
         kept = trusted.copy()
         kept[np.flatnonzero(trusted)[outliers(table.torque[trusted] - best.held_out)]] = False
@@ -284,7 +285,7 @@ def _chosen(tried: Sequence[tuple[Shape, FrictionCandidate]]) -> tuple[Shape, Fr
         within = bool(np.mean(worse) <= max(np.std(worse, ddof=1) / np.sqrt(len(worse)), rounding))
         more = best.parameters - candidate.parameters
         before, left = candidate.fit.residuals[0], best.fit.residuals[0]
-        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE)
+        return within or (more > 0 and by_chance(before, left, more, best.parameters) > MAX_CHANCE_OF_NUMBERS)
 
     return min(((s, c) for s, c in tried if as_good(c)), key=lambda pair: (pair[1].parameters, pair[1].error))
 
@@ -352,13 +353,30 @@ def _kept(found: Any, known: Plain, fell: bool) -> Any:
     return law
 
 
+def parts_of(table: FrictionTable) -> list[NDArray[np.bool_]]:
+    """Return the rows of each part of a table that is predicted from the others."""
+    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
+    return [fold == part for part in np.unique(fold)]
+
+
+def plain_error(table: FrictionTable, trusted: NDArray[np.bool_]) -> float:
+    """Return the error of Coulomb and viscous friction by least squares, where each part is predicted from the others [N.m].
+
+    With both directions a zero error of the torque is among the unknowns, with loads a loss in proportion to them. Outliers are
+    left out, as from the error of a candidate.
+    """
+    table = _rows(table, trusted)
+    way = np.sign(table.speed)
+    both_ways = [np.ones(len(way))] if np.ptp(way) else []
+    loss = [] if table.load is None else [way * np.abs(table.load)]
+    return rms_left_out(np.stack([way, table.speed, *both_ways, *loss], axis=1), table.torque, parts_of(table))
+
+
 def _candidate(shape: Shape, table: FrictionTable, gear: Gear) -> FrictionCandidate:
     start = gear.replace(friction_input=shape.law, friction_mesh=shape.mesh or gear.friction_mesh)
     whole = fit(start, table, shape.paths, ties=shape.followers)
-    fold = np.argsort(np.argsort(table.speed, kind="stable")) % min(MAX_FOLDS, len(table.speed))
     held_out, asked = np.empty(len(table.speed)), plan(whole.gear, [""], shape.paths, ties=shape.followers)
-    for part in np.unique(fold):
-        left_out = fold == part
+    for left_out in parts_of(table):
         problem = problem_of(asked, whole.gear, [table], [~left_out])  # of one channel: its weight changes nothing
         x = problem.solve(problem.start(), problem.first_weights(), EXACT_TOLERANCE)
         ((predicted, _),) = problem.predict(x)

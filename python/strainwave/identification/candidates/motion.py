@@ -18,14 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, friction, loads
-from strainwave.identification.candidates.motion_candidate import (
-    GRAVITY,
-    MAX_ERROR,
-    MotionCandidate,
-    candidate_of,
-)
+from strainwave.identification.candidates.motion_candidate import GRAVITY_PATHS, MAX_ERROR, MotionCandidate, candidate_of
 from strainwave.identification.candidates.motion_model import (
-    FOLLOWS,
+    BREAKAWAY_FOLLOWS,
     INPUT,
     MotionModel,
     sizes_of_waves,
@@ -55,7 +50,7 @@ from strainwave.identification.experiments.torsion_loop import series_compliance
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-COULOMB = (f"{INPUT}coulomb", f"{INPUT}viscous")
+COULOMB_AND_VISCOUS = (f"{INPUT}coulomb", f"{INPUT}viscous")
 AS_IN_SET = "split as in the start set"
 MIN_STRETCH = 20  # samples of a stretch that is held out
 MIN_SLIDING = 50  # samples of sliding in the pass band: with fewer the log is compared in the full band, at reversals, too
@@ -229,14 +224,15 @@ def _simple(log: MotionLog, drive: Drive, inertia: str) -> tuple[MotionModel, di
     """
     plain, speed = fit_plain(log, drive), one_speed(log)
     start, free = _start(drive, plain, inertia)
-    friction_free: tuple[str, ...] = COULOMB
+    friction_free: tuple[str, ...] = COULOMB_AND_VISCOUS
     priors = dict[str, tuple[float, float]]()
     if speed:
-        start, friction_free = _with_viscous_share(start, drive.gear.friction_input, speed), COULOMB[:1]
-        priors = {COULOMB[1]: prior_of_viscous(start.gear.friction_input, speed)}
+        start, friction_free = _with_viscous_share(start, drive.gear.friction_input, speed), COULOMB_AND_VISCOUS[:1]
+        priors = {COULOMB_AND_VISCOUS[1]: prior_of_viscous(start.gear.friction_input, speed)}
     zero = [plain.offset * per_torque(drive, log.effort)] if log.both_ways else []
     name = "Coulomb and viscous" + (f", {AS_IN_SET}" if speed else "")
-    return MotionModel(name, log.starting((*zero, *plain.shares)), start, (*free, *friction_free), FOLLOWS, speed), priors
+    near = log.starting((*zero, *plain.shares))
+    return MotionModel(name, near, start, (*free, *friction_free), BREAKAWAY_FOLLOWS, speed), priors
 
 
 def _with_own_split(model: MotionModel) -> MotionModel | None:
@@ -324,7 +320,7 @@ def _start(drive: Drive, plain: Plain, inertia: str) -> tuple[Drive, list[str]]:
         rest = total - drive.gear.input_inertia - carried / ratio**2
         drive = drive.replace(motor=drive.motor.replace(inertia=max(rest, MIN_INERTIA_SHARE * total)))
     load = loads.Pendulum(inertia=carried, gravity_torque=plain.gravity, gravity_phase=plain.phase)
-    return drive.replace(load=load), [inertia, *GRAVITY]
+    return drive.replace(load=load), [inertia, *GRAVITY_PATHS]
 
 
 def _with_viscous_share(drive: Drive, law: Any, speed: float) -> Drive:

@@ -26,6 +26,7 @@ from strainwave.identification.candidates.motion_model import (
     slope_of,
 )
 from strainwave.identification.candidates.plain import (
+    BLOCKS_PER_STRETCH,
     MAX_RELATIVE_ERROR,
     MIN_SLIDING_SPEED,
     held_out_residuals,
@@ -33,7 +34,7 @@ from strainwave.identification.candidates.plain import (
     stretches,
 )
 from strainwave.identification.experiments.motion_log import FAST_QUANTILE, MIN_INERTIA_SHARE, MotionLog, inertia_of
-from strainwave.identification.fitting.fit import Fit, fit, problem_of, solved_problem
+from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit, problem_of, solved_problem
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import plan
 from strainwave.identification.results.file_result import HeldOut
@@ -47,11 +48,9 @@ Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 MAX_ERROR = 0.995  # of the held-out error of the simpler model: what leaves more is not worth a part more
-GAIN_BLOCKS = 10  # of each stretch, over which the gain of a model scatters
-MAX_RELATIVE_COST = 1e-3  # change of the cost by a step, at which a fit ends while models are compared
-MAX_STEPS = 8  # of a fit while models are compared
-GRAVITY = ("load.gravity_torque", "load.gravity_phase")
-SHAPES = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
+MAX_STEPS_OF_COMPARED_FIT = 8  # of a fit while models are compared
+GRAVITY_PATHS = ("load.gravity_torque", "load.gravity_phase")
+SHAPE_NUMBERS = ("exponent", "stribeck_speed")  # numbers in which friction is not linear
 JACKKNIFE_BLOCKS = 10  # of a log, each of which is left out once
 MIN_COULOMB_DIFFERENCE = 0.1  # relative, from which another law of friction is named
 OF_ALL_LAWS = (f"{INPUT}coulomb", f"{INPUT}viscous")  # numbers of friction that mean the same in each law
@@ -180,7 +179,7 @@ class MotionCandidate(ComparedByFields):
     def gain_over(self, other: MotionCandidate) -> float:
         """Return by how many standard deviations the squares of the residuals are smaller than those of another model."""
         stretches = [before**2 - after**2 for before, after in zip(other.residuals, self.residuals, strict=True)]
-        gains = [block.sum() for stretch in stretches for block in np.array_split(stretch, GAIN_BLOCKS)]
+        gains = [block.sum() for stretch in stretches for block in np.array_split(stretch, BLOCKS_PER_STRETCH)]
         return sigmas_of_gain(without_single_events(np.array(gains)))
 
     def predicts_as_well_as(self, other: MotionCandidate) -> bool:
@@ -206,7 +205,7 @@ def candidate_of(model: MotionModel, held_out: Sequence[Rows], priors: Mapping[s
     known_before = {**{path: before[plain(path)] for path in model.free if plain(path) in before}, **by_all}
     asked = plan(model.drive, [""], model.free, ties=model.ties, priors=known_before)
     problem = problem_of(asked, model.drive, [model.log], [None])
-    x = problem.solve(problem.start(), problem.first_weights(), MAX_RELATIVE_COST, trials=MAX_STEPS)
+    x = problem.solve(problem.start(), problem.first_weights(), ROUGH_TOLERANCE, trials=MAX_STEPS_OF_COMPARED_FIT)
     (record,) = problem.records
     ((predicted, _),) = problem.predict(x)
     ended = replace(model, drive=record.model(x), log=model.log.starting(x[record.nuisances].tolist()))
@@ -221,7 +220,7 @@ def _folds(problem: Problem, x: Array, ended: MotionModel, held_out: Sequence[Ro
     by_fold = by_full_band(ended, [~stretch for stretch in held_out])
     ((predicted, slopes),) = problem.predict(x)
     out = [stretch[log.motion.rows] for stretch in held_out]
-    without = without_rows(problem, x, out, SHAPES)
+    without = without_rows(problem, x, out, SHAPE_NUMBERS)
     for stretch, rows, there, waves in zip(held_out, out, without, by_fold, strict=True):
         for path, (value, _) in waves.items():
             there[places[path]] = value
@@ -258,7 +257,7 @@ def without_rows(problem: Problem, x: Array, outs: Sequence[Rows], kept: Sequenc
     size = np.linalg.norm(rows, axis=0)
     size[size == 0.0] = 1.0
     paths = [each.path for each in problem.plan.unknowns]
-    gravity = [paths.index(path) for path in GRAVITY] if set(GRAVITY) <= set(paths) else []
+    gravity = [paths.index(path) for path in GRAVITY_PATHS] if set(GRAVITY_PATHS) <= set(paths) else []
     low = np.where(np.isin(np.arange(len(x)), gravity), -np.inf, low)  # turned round rather than negative
     for out in outs:
         system = (np.concatenate([rows[~out], noise * before]) / size)[:, linear]

@@ -26,11 +26,11 @@ from strainwave.statistics.residuals import autoregression, chance_of_gain, corr
 
 LOSSES = tuple(f"gear.friction_mesh.{name}" for name in QUADRANTS)
 INPUT = "gear.friction_input."
-WITHIN = f"{INPUT}law."  # where friction stands that varies over the angle
+WITHIN_CYCLIC = f"{INPUT}law."  # where friction stands that varies over the angle
 SLOPE_STEP = 0.05  # relative change of a speed, by which a law of friction is differentiated
-BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
-NEAR_BENDS = (BENDS[1] / BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
-FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
+TRIED_BENDS = np.geomspace(3e-3, 3.0, 16)  # rad of the input, in which bristles bend
+NEAR_THE_BEST_BEND = (TRIED_BENDS[1] / TRIED_BENDS[0]) ** np.array([-1 / 3, 0.0, 1 / 3])  # times the best of them
+BREAKAWAY_FOLLOWS = {f"{INPUT}breakaway": f"{INPUT}coulomb"}
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
@@ -41,8 +41,8 @@ MIN_OUTPUT_TURNS = 3.0  # the same over the output's turn
 MIN_OWN_SHARE = 0.5  # of a wave, that no other term of the model makes up [1]
 MIN_SIZE = 0.05  # of the largest wave: turning over at a reversal makes smaller ones of it
 BIAS_IN_FULL_BAND = 0.05  # of a wave: what numbers by the pass band and a smoothed angle make of it (assumed)
-MAX_CHANCE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
-NUMBERS = {  # of `friction.Cyclic`
+MAX_CHANCE_OF_WAVE = 1e-3  # probability with which noise alone makes as large a wave at any of the orders
+NUMBERS_OF_WAVE = {  # of `friction.Cyclic`
     "friction": ("order", "amplitude", "phase"),
     "detent": ("detent_order", "detent_torque", "detent_phase"),
 }
@@ -83,7 +83,7 @@ class MotionModel(ComparedByFields):
 
     def path_of(self, name: str) -> str:
         """Return the path of a number of the friction at the input as it slides."""
-        return f"{WITHIN if isinstance(self.drive.gear.friction_input, friction.Cyclic) else INPUT}{name}"
+        return f"{WITHIN_CYCLIC if isinstance(self.drive.gear.friction_input, friction.Cyclic) else INPUT}{name}"
 
     def having(self, what: str, law: Any, *names: str) -> MotionModel:
         """Return the same with another law of friction at the input as it slides, and further numbers of it free."""
@@ -120,7 +120,7 @@ def slope_of(law: Any, speed: float) -> float:
 
 def _within(path: str) -> str:
     """Return the path of a number of the friction at the input that now stands inside another law."""
-    return path.replace(INPUT, WITHIN) if path.startswith(INPUT) else path
+    return path.replace(INPUT, WITHIN_CYCLIC) if path.startswith(INPUT) else path
 
 
 def without(free: Sequence[str], name: str) -> tuple[str, ...]:
@@ -198,14 +198,14 @@ def bristled(drive: Drive, bend: float) -> Drive:
 
 def best_bend(log: MotionLog, drive: Drive, nuisances: Array, rows: Rows) -> float | None:
     """Return the bend of bristles that explains most of some samples [rad]; None if the law of friction has no bristles."""
-    if bristled(drive, BENDS[0]) is drive:
+    if bristled(drive, TRIED_BENDS[0]) is drive:
         return None
 
     def error(bend: float) -> float:
         return float(np.mean(log.residual(bristled(drive, bend), nuisances)[rows] ** 2))
 
-    coarse = min(BENDS.tolist(), key=error)
-    return float(min((coarse * NEAR_BENDS).tolist(), key=error))
+    coarse = min(TRIED_BENDS.tolist(), key=error)
+    return float(min((coarse * NEAR_THE_BEST_BEND).tolist(), key=error))
 
 
 # ---- Waves over the angle --------------------------------------------------------------------------------------------
@@ -350,7 +350,7 @@ def _beyond_chance(base: Array, left: Array, pairs: Mapping[Wave, Array]) -> dic
             break
         freedom = (len(rest) - columns.shape[1] - 2) / correlation_length(left_by[best])
         gain = chance_of_gain(float(rest @ rest), float(left_by[best] @ left_by[best]), 2, freedom)
-        if len(pairs) * gain > MAX_CHANCE:
+        if len(pairs) * gain > MAX_CHANCE_OF_WAVE:
             break
         chosen.append(best)
         columns, rest = np.column_stack([columns, white[best]]), left_by[best]
@@ -369,7 +369,7 @@ def _in_gear(model: MotionModel, sizes: Mapping[Wave, complex]) -> MotionModel:
     law: Any = model.drive.gear.friction_input
     free, of_full_band = list(model.free), list(model.of_full_band)
     for wave, size in sizes.items():
-        order, amplitude, phase = NUMBERS[wave.kind]
+        order, amplitude, phase = NUMBERS_OF_WAVE[wave.kind]
         unit = model.law.coulomb if wave.kind == "friction" else 1.0
         more = {order: wave.order, amplitude: abs(size) / unit, phase: float(np.angle(size))}
         paths = [f"{INPUT}{name}[{len(getattr(law, name))}]" for name in (amplitude, phase)]

@@ -27,7 +27,7 @@ from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
-STRETCHES = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
+STRETCH_ENDS = (0.0, 0.3, 0.7, 1.0)  # of the motion: each of the stretches between is held out once; the last 30 % are reported
 MAX_RELATIVE_ERROR = 0.98  # of the held-out error of the simpler log: along a recorded speed, or with a delay, it must be less
 MAX_DELAY_SAMPLES = 5  # of the log
 MIN_SPEED = 0.01  # of a fast speed: the motion begins and ends where it is exceeded
@@ -170,7 +170,7 @@ def best_delay(log: MotionLog, drive: Drive) -> float:
 def stretches(log: MotionLog) -> list[Rows]:
     """Return the contiguous stretches of the motion that are held out in turn, the last 30 % at the end, shape (m,) each."""
     places = np.flatnonzero(moving(log))
-    ends = [places[0] + round(share * (places[-1] + 1 - places[0])) for share in STRETCHES]
+    ends = [places[0] + round(share * (places[-1] + 1 - places[0])) for share in STRETCH_ENDS]
     every = np.arange(len(log.motion.time))
     return [(every >= begin) & (every < end) & log.sound for begin, end in pairwise(ends)]
 

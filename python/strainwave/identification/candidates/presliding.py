@@ -17,7 +17,7 @@ from strainwave._core import PassivityWarning
 from strainwave.analysis.branches import thinned, turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
-from strainwave.identification.candidates.friction import MAX_CHANCE, by_chance, dissipating
+from strainwave.identification.candidates.friction import MAX_CHANCE_OF_NUMBERS, by_chance, dissipating
 from strainwave.identification.candidates.torsion.dissipation import unit_traces
 from strainwave.identification.experiments.experiment import changing, sensible
 from strainwave.identification.fitting.unknowns import Estimate
@@ -27,13 +27,13 @@ from strainwave.statistics.scale import ONE_SIGMA, noise_sigma, student
 
 Array = NDArray[np.float64]
 
-MAX_ELEMENTS = 4  # Maxwell
+MAX_PRESLIDING_ELEMENTS = 4  # Maxwell
 GRID_SIZE = 24  # reaches of elements that a start is chosen from
 MAX_SHARE_LEFT = 0.98  # of the error: an element more that leaves more of it is the last tried
-FOLD_COUNT = 4  # of the branches, each predicted from the others
+BRANCH_FOLDS = 4  # of the branches, each predicted from the others
 WHOLE_TRIALS, PART_TRIALS = 40, 10  # steps of a fit to the whole loop, and of one that starts from there
 MIN_RATES = 3  # different ramps, that determine how breakaway depends on the rate
-MIN_MOTION_SIGMA = 6.0  # of the angle's noise: a smaller motion is none
+MIN_BREAKAWAY_SIGMA = 6.0  # of the angle's noise: a smaller motion is none
 MIN_SAMPLES_OF_RAMP = 8
 FIRST_SHARE = 0.5  # of the largest torque of a ramp, below which a shaft is first taken to stick
 MAX_LINES = 50  # tried for what a shaft follows while it sticks
@@ -121,7 +121,7 @@ def breakaways(recording: Recording) -> list[BreakawayPoint]:
     check_recording("recording", recording)
     time, torque, angle = recording.time, sensible(recording, "torque", "N.m"), sensible(recording, "angle", "rad")
     steps = np.abs(np.diff(angle))
-    of_noise, of_encoder = MIN_MOTION_SIGMA * noise_sigma(angle), 2.0 * float(steps[steps > 0.0].min(initial=np.inf))
+    of_noise, of_encoder = MIN_BREAKAWAY_SIGMA * noise_sigma(angle), 2.0 * float(steps[steps > 0.0].min(initial=np.inf))
     if np.mean(steps == 0.0) > 0.2 and np.isfinite(of_encoder):  # an encoder that stands still repeats itself
         of_noise = max(of_noise, of_encoder)
     smallest = max(of_noise, 1e-12)  # rad: the smallest motion
@@ -270,7 +270,7 @@ class BreakawayTorque:
     slope: Estimate | None
 
 
-def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[PreslidingCandidate]:
+def fit_presliding(loop: PreslidingLoop, elements: int = MAX_PRESLIDING_ELEMENTS) -> list[PreslidingCandidate]:
     """Fit a bristle (LuGre, Dahl) and up to four Maxwell elements to a loop of slow motion.
 
     The bristle follows its law in the limit of slowness, T = s F + (T0 - s F) exp(-k |x - x0| / F) since the last reversal; an
@@ -313,7 +313,7 @@ def fit_presliding(loop: PreslidingLoop, elements: int = MAX_ELEMENTS) -> list[P
         if candidate is best or within or more <= 0:
             return candidate is best or within
         before, left = ((loop.torque - each.predicted)[begun] for each in (candidate, best))
-        return by_chance(before, left, more, len(best.estimates) + 1) > MAX_CHANCE
+        return by_chance(before, left, more, len(best.estimates) + 1) > MAX_CHANCE_OF_NUMBERS
 
     first = min((each for each in tried if as_good(each)), key=lambda each: (len(each.estimates), each.error))
     return [first, *sorted((each for each in tried if each is not first), key=lambda each: each.error)]
@@ -421,7 +421,7 @@ def _candidate(
     solution = _solved(predict, start, loop.torque, begun, count, WHOLE_TRIALS)
     predicted = predict(solution)
     held_out = predicted.copy()
-    parts, again = branch % FOLD_COUNT, branch > branch[begun].min()  # the first branch determines the beginning
+    parts, again = branch % BRANCH_FOLDS, branch > branch[begun].min()  # the first branch determines the beginning
     for part in np.unique(parts[again]):
         left_out = again & (parts == part)
         if (begun & ~left_out).sum() > len(solution):
@@ -455,14 +455,7 @@ def _solved(predict: Predict, start: Array, torque: Array, chosen: NDArray[np.bo
     def jacobian(x: Array) -> Array:
         return np.asarray(_slopes(predict, x)[chosen])
 
-    solution = least_squares(
-        residuals,
-        start,
-        jac=jacobian,
-        bounds=(low, np.inf),
-        x_scale="jac",
-        max_nfev=trials,
-    )
+    solution = least_squares(residuals, start, jac=jacobian, bounds=(low, np.inf), x_scale="jac", max_nfev=trials)
     return np.asarray(solution.x, float)
 
 

@@ -36,14 +36,14 @@ MAX_BACKWARD = 0.1  # of the way: a record one way does not go back by more
 MIN_MOVING_SPEED = 0.05  # of the largest speed of a record: slower parts rest
 MIN_MOTION_SIGMA = 8.0  # of the noise of the angle, by which a shaft moves over a part of the record
 MEAN_SPEED_PARTS = 50  # of a record, each with a mean speed
-MIN_ROWS = 40  # of a record whose angle determines speeds
+MIN_ROWS_OF_RECORD = 40  # of a record whose angle determines speeds
 MIN_ROWS_OF_STRETCH = 20
 MIN_STEADY_SHARE = 0.5  # of the moving time, that stretches at constant speed fill; a record that has less is a log
 MAX_ROWS_OF_LEVEL = 2_000  # of a stretch, of which its level is found; a longer one is thinned
 MIN_GRAVITY_ANGLE = 0.2  # rad: over less gravity is a constant
 ASYMMETRY_SIGMA = 0.1  # relative, of the friction of one direction to that of the other (assumed)
-MAX_CHANCE = 1e-3  # probability that chance explains as much as gravity does
-MAX_RELATIVE_SIGMA = 0.5  # of a level over the usual level: beyond, gravity cannot be separated from it
+MAX_CHANCE_OF_GRAVITY = 1e-3  # probability that chance explains as much as gravity does
+MAX_LEVEL_SIGMA = 0.5  # of a level over the usual level: beyond, gravity cannot be separated from it
 FULL_TURN = 2.0 * np.pi  # rad
 ORDER_COUNT = 10  # harmonics of the position control article, and of the law
 MIN_SAMPLES_PER_PERIOD = 4  # of the highest order
@@ -90,7 +90,7 @@ def constant_speeds(time: Array, angle: Array) -> list[slice]:
     []
     """
     rows = len(time)
-    if rows < MIN_ROWS:
+    if rows < MIN_ROWS_OF_RECORD:
         return []
     apart = max(rows // MEAN_SPEED_PARTS, 1)
     ahead = np.arange(rows - apart)
@@ -155,8 +155,8 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
     if len(measured_angles) < len(shorter) or np.ptp(np.concatenate(measured_angles)) < MIN_GRAVITY_ANGLE:
         return alone
     levels, left = _with_gravity(shorter, _symmetry(speeds, alone.torque))
-    entangled = levels.sigma.max() > MAX_RELATIVE_SIGMA * float(np.median(np.abs(levels.torque)))
-    return alone if entangled or _chance(before, left, len(shorter) + 2) > MAX_CHANCE else levels
+    entangled = levels.sigma.max() > MAX_LEVEL_SIGMA * float(np.median(np.abs(levels.torque)))
+    return alone if entangled or _chance(before, left, len(shorter) + 2) > MAX_CHANCE_OF_GRAVITY else levels
 
 
 def _means(torques: Sequence[Array]) -> Levels:

@@ -23,7 +23,7 @@ MIN_SPEEDS_EACH_WAY = 3  # for numbers of its own for each direction
 MIN_SPEED_SPAN = 3.0  # fastest over slowest: within less a curve looks straight
 MIN_TEMPERATURE_SPAN = 2.0  # K
 MAX_ORDER = 8  # of the turn
-MAX_CHANCE = 1e-3  # probability that chance alone gives a harmonic, over all orders
+MAX_CHANCE_OF_HARMONIC = 1e-3  # probability that chance alone gives a harmonic, over all orders
 MAX_WAVES = 4  # harmonics in a law
 SPEED_TOLERANCE = 0.02  # relative: speeds that differ by less are one
 MAX_MAP_SPEEDS, MAX_MAP_LEVELS = 8, 128  # of a map
@@ -90,10 +90,7 @@ def _started(table: FrictionTable, *, curved: bool, falls: bool) -> Shape:
     speed, torque = np.abs(table.speed), np.sign(table.speed) * table.torque
     fastest = float(speed.max())
     grid = list(
-        product(
-            np.geomspace(speed.min(), fastest, STRIBECK_GRID) if falls else (fastest,),
-            EXPONENT_GRID if curved else (1.0,),
-        )
+        product(np.geomspace(speed.min(), fastest, STRIBECK_GRID) if falls else (fastest,), EXPONENT_GRID if curved else (1.0,))
     )
     shapes = [
         np.stack([np.ones_like(speed), (speed / fastest) ** p, *([np.exp(-((speed / v_s) ** 2))] if falls else [])], axis=1)
@@ -258,7 +255,7 @@ def harmonics_of(table: FrictionTable, residual: Array) -> list[tuple[float, flo
     while len(orders) < MAX_WAVES:
         tried = {n: _explained(residual, [pairs[each] for each in (*orders, n)]) for n in pairs if n not in orders}
         order, (coefficients, still) = min(tried.items(), key=lambda item: item[1][1])
-        if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(coefficients)) > MAX_CHANCE:
+        if MAX_ORDER * chance_of_gain(left, still, 2, len(residual) - len(coefficients)) > MAX_CHANCE_OF_HARMONIC:
             break
         orders, waves, left = [*orders, order], coefficients, still
     return sorted(zip(map(float, orders), *(each.tolist() for each in amplitudes_of(waves)), strict=True))

@@ -28,10 +28,10 @@ from strainwave.identification.results.file_result import (
 )
 from strainwave.identification.results.steady_friction import STEADY_FRICTION, friction_of, has_loss, mean_load, measured_speeds
 from strainwave.messages import listed
-from strainwave.typeset import percent
+from strainwave.typeset import fixed, number, percent, uncertain, unit
 
 AGREEMENT = "agreement of files"  # name of the check of two files
-SCALE = "torques of two files"  # likewise, of all their torques together
+SCALE_OF_TORQUES = "torques of two files"  # likewise, of all their torques together
 LOAD_PATHS = (LOAD_INERTIA, GRAVITY_PATH)
 MAX_CHANCE_OF_START_SET = 2.7e-3  # probability that a sum of squares exceeds its limit: that of three standard deviations
 FIRST_STIFFNESS = ("gear.stiffness.k", "gear.stiffness.k1", "gear.stiffness.a1")  # at zero twist, by the law
@@ -39,7 +39,7 @@ SPEED_QUANTILES, SPEED_COUNT = (0.1, 0.9), 5  # quantiles of the speeds of a fil
 MAX_PARAMETERS_LISTED = 4  # parameters named with a comparison, those furthest apart first
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
-REPEATABILITY = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
+RUN_TO_RUN_SPREADS = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
 
 
@@ -101,8 +101,9 @@ def _off_start(start: GearSet, parameters: Sequence[CombinedParameter]) -> Itera
         of_kept = float(np.linalg.norm([*estimate.shift_by_kept.values(), 0.0]))
         sigma = max(float(np.linalg.norm([spread, estimate.sigma / estimate.value, of_kept])), 1e-300)
         off = float(np.log(estimate.value / before)) / sigma
-        value = f"{estimate.path} = {estimate.value:.4g} ± {estimate.sigma:.2g} {estimate.unit}"
-        yield each.source, off, f"{value} against {before:.4g} ± {100.0 * spread:.2g} % ({off:+.1f} σ)"
+        value = f"{estimate.path} = {uncertain(estimate.value, estimate.sigma)} {unit(estimate.unit)}"
+        apart = f"{fixed(abs(off), 1)} σ {'above' if off > 0.0 else 'below'}"
+        yield each.source, off, f"{value}, {apart} {number(before, 4)} ± {percent(spread)}"
 
 
 def _in_set(start: GearSet, estimate: FileEstimate) -> tuple[str, float]:
@@ -170,7 +171,7 @@ def torque_scales(files: Sequence[FileResult]) -> Iterator[Check]:
         is_one = bool(np.all(np.abs(off - factor) < MAX_DISTANCE * sigma))
         if differs and is_one:
             yield Check(
-                SCALE, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
+                SCALE_OF_TORQUES, f"{one.name}, {other.name}", abs(factor), MAX_DISTANCE * GAIN_SIGMA, "1", True,
                 f"{listed(path for path, *_ in pairs)} of the first are all {float(np.exp(factor)):.4g} times those of the "
                 "second: another load changes no friction, and another temperature no load",
                 "see whether torque constant, current scale and unit are the same in both files",
@@ -211,7 +212,8 @@ def _load_apart(estimate: FileEstimate | None, reference: FileEstimate) -> str:
     """Return in words how a number of a load differs from that of another log; empty if it does not."""
     if estimate is None:  # the model that predicts best has none; one without inertia only moved too slowly
         shows = reference.path == GRAVITY_PATH and reference.value > MAX_DISTANCE * reference.sigma
-        return f"no {GRAVITY_PATH} against {reference.value:.4g} ± {reference.sigma:.2g} {reference.unit}" if shows else ""
+        words = f"{uncertain(reference.value, reference.sigma)} {unit(reference.unit)}"
+        return f"no {GRAVITY_PATH} against {words}" if shows else ""
     difference_of_loads = _contradiction(estimate, reference)
     return difference_of_loads.words if estimate.unit == reference.unit and difference_of_loads.apart > MAX_DISTANCE else ""
 
@@ -238,7 +240,7 @@ def _of_friction(one: FileResult, other: FileResult) -> tuple[FileEstimate, File
 
 def repeatability(path: str) -> float:
     """Return the relative standard deviation of a parameter from run to run of one gear, by its path."""
-    return REPEATABILITY.get(path.removeprefix("gear.").partition(".")[0], GAIN_SIGMA)
+    return RUN_TO_RUN_SPREADS.get(path.removeprefix("gear.").partition(".")[0], GAIN_SIGMA)
 
 
 class _Contradiction(NamedTuple):
@@ -274,9 +276,11 @@ def _contradiction(one: FileEstimate, other: FileEstimate) -> _Contradiction:
     sigma = float(np.hypot(np.hypot(one.own, other.own), one.common - other.common))
     off, usual, size = abs(difference(one, other)), max(float(np.hypot(spread, sigma)), 1e-300), abs(best.value)
     as_share = size > 0.0 and not best.is_phase
-    differ, may = (percent(each / size) if as_share else f"{each:.2g} {best.unit}" for each in (off, MAX_DISTANCE * usual))
+    differ, may = (
+        percent(each / size) if as_share else f"{number(each, 2)} {unit(best.unit)}" for each in (off, MAX_DISTANCE * usual)
+    )
     words = (
-        f"{one.label} = {one.value:.4g} ± {one.sigma:.2g} against {other.value:.4g} ± {other.sigma:.2g} {one.unit}: they "
-        f"differ by {differ}; runs of one gear differ by up to {may}"
+        f"{one.label} = {uncertain(one.value, one.sigma)} against {uncertain(other.value, other.sigma)} {unit(one.unit)}: "
+        f"they differ by {differ}; runs of one gear differ by up to {may}"
     )
     return _Contradiction(words, off / usual, best.path, one.sigma <= other.sigma)

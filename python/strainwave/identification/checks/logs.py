@@ -13,7 +13,7 @@ from strainwave.files.units import convert, measures
 from strainwave.identification.candidates.motion_candidate import MotionCandidate
 from strainwave.identification.candidates.plain import fit_plain, moving
 from strainwave.identification.checks.comparisons import repeatability
-from strainwave.identification.checks.sizes import MISTAKEN
+from strainwave.identification.checks.sizes import MISTAKEN_UNITS
 from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque
 from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.reading.motion import MIN_EXPLAINED, PARTS_OF_RECORD, slopes_and_speeds, speed_per_slope
@@ -82,7 +82,7 @@ def held_out_error(held_out: HeldOut, source: str, joints: Collection[str] = ())
         others = f"the motion of joints {listed(joints)} is known, but the record may be too short for the torque that they add"
     unit = held_out.unit
     yield Check(
-        "unexplained on data held out", source, held_out.error, MAX_UNEXPLAINED * held_out.zero, unit,
+        "unexplained on held-out data", source, held_out.error, MAX_UNEXPLAINED * held_out.zero, unit,
         held_out.relative > MAX_UNEXPLAINED,
         f"the RMS error of {held_out.channel} on the {held_out.stretch} is {held_out.words}: more than half is unexplained",
         f"{others}; the motion may be too small or at one speed only, or columns, units or sides are not what they are "
@@ -453,7 +453,7 @@ def _mistakes(recording: Recording, ratio: float, columns: Mapping[str, str]) ->
     if name not in recording:
         name, other, factor = other, name, 1.0 / ratio
     unit, column = recording.unit(name), columns.get(name, name)
-    for right in MISTAKEN.get(unit, ()):
+    for right in MISTAKEN_UNITS.get(unit, ()):
         yield f"the angle is in {right}, not in {unit}", convert(1.0, right, unit), as_option("unit", column, right)
     yield f"it is that of the {other.removesuffix('_angle')}", factor, as_option("column", other, column)
 

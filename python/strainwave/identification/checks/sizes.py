@@ -40,7 +40,7 @@ REST_SPEED = 0.01  # rad/s of the input, at which friction is that of a shaft ab
 MAX_INPUT_SPEED = 1600.0  # rad/s, 15 000 1/min: makers allow 14 000 1/min to the smallest gears, and less to others
 MAX_FACTOR_LEFT = 4.0  # a mistake explains a factor if it leaves a smaller one
 # What the header of a column may name wrongly, and what it may be.
-MISTAKEN = {
+MISTAKEN_UNITS = {
     "rad": ("deg", "rev", "arcmin"), "deg": ("rad", "rev", "arcmin"), "rad/s": ("rpm", "deg/s"), "rpm": ("rad/s",),
     "deg/s": ("rad/s",), "N.m": ("mN.m", "N.cm"), "mN.m": ("N.m",), "A": ("mA",), "V": ("mV",),
 }  # fmt: skip
@@ -321,7 +321,7 @@ def hints_of_levels(table: Recording) -> Iterator[str]:
 
 def wrong_units(quantity: str, unit: str) -> dict[str, float]:
     """Return mistakes in the unit of a quantity, and the factor by which each makes it too large."""
-    return {f"the {quantity} is in {other}, not in {unit}": convert(1.0, unit, other) for other in MISTAKEN.get(unit, ())}
+    return {f"the {quantity} is in {other}, not in {unit}": convert(1.0, unit, other) for other in MISTAKEN_UNITS.get(unit, ())}
 
 
 def nearest(factor: float, mistakes: Mapping[str, float]) -> tuple[str, float]:

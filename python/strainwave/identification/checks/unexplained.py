@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.checks.sizes import MISTAKEN
+from strainwave.identification.checks.sizes import MISTAKEN_UNITS
 from strainwave.identification.experiments.drive_log import ENCODERS, DriveLog
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
@@ -171,7 +171,7 @@ def _likely(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> I
         turned = recording.with_column(name, -1.0 * recording[name], units[name])
         yield Cause(f'the sign of "{name}" is reversed', f'multiply the column "{name}" by -1', turned, drive)
     for name, unit in units.items():
-        for other in MISTAKEN.get(unit, ()):
+        for other in MISTAKEN_UNITS.get(unit, ()):
             scaled = recording.with_column(name, convert(1.0, other, unit) * recording[name], unit)
             remedy = f"state its unit: {as_option('unit', name, other)}"
             yield Cause(f'"{name}" is in {other}, not in {unit}', remedy, scaled, drive)
@@ -231,7 +231,7 @@ def judged_shape(
         return Judged()
     name = max(sizes, key=lambda each: sizes[each])
     size, limit = sizes[name], MAX_SHARE_OF_SHAPE * varies
-    words = f"what the model leaves has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
+    words = f"the residual has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
     check = Check(
         SHAPE_OF_RESIDUALS, source, size, limit, unit, size > limit, words if size > limit else "",
         "look at the residual below the picture: the model lacks what it shows there, or a column is of another joint",

@@ -41,7 +41,7 @@ USUAL_COLUMNS = ("input_angle", "current")  # columns of a log that nearly every
 RELATIVE_NOISE = 0.01  # of the largest value of a channel, if no noise is given (assumed)
 Criterion = Literal["A", "D"]
 MIN_GAIN = 1e-9  # of a criterion; a smaller one is rounding
-MAX_PASSES = 50  # of exchanges; a handful is enough
+MAX_EXCHANGE_PASSES = 50  # of exchanges; a handful is enough
 BUDGET_TOLERANCE = 1e-12  # relative, for rounding
 
 
@@ -282,7 +282,7 @@ def _exchanged(
     chosen: list[int], information: Array, cost: Array, left: float, before: Array, wanted: Sequence[int], criterion: Criterion
 ) -> list[int]:
     """Return the places with single measurements replaced by others, as long as that improves the criterion."""
-    for _ in range(MAX_PASSES):
+    for _ in range(MAX_EXCHANGE_PASSES):
         improved = False
         for place, one in enumerate(chosen):
             rest = before + information[[*chosen[:place], *chosen[place + 1 :]]].sum(axis=0)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-EXPERIMENTS = ("friction", "torsion", "motion")
+EXPERIMENT_KINDS = ("friction", "torsion", "motion")
 USUAL_DURATIONS = {"friction": 20.0, "torsion": 300.0}  # s: to settle and be averaged; of a slow loop (assumed)
 PARTS_IN_A_LOOP = ("stiffness", "hysteresis", "friction_input")  # that a torsion loop may depend on
 MAX_MEASUREMENTS = 5000  # of a plan: beyond, comparing them takes minutes
@@ -223,7 +223,7 @@ def plan_experiments(
     >>> f"{plan['friction_input.viscous'].after:.3g}"  # 1e-3 N.m / 99 rad/s
     '1.01e-05'
     """
-    kinds = [arguments.one_of("experiments", each, EXPERIMENTS) for each in arguments.names("experiments", experiments)]
+    kinds = [arguments.one_of("experiments", each, EXPERIMENT_KINDS) for each in arguments.names("experiments", experiments)]
     arguments.one_of("criterion", criterion, ("A", "D"))
     whole = _whole(model, "motion" in kinds)
     budget = arguments.seconds("time", time)

@@ -38,7 +38,7 @@ CHANNEL_UNITS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_e
 MAX_DRIVEN_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
 MAX_DRIVEN_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and a quarter is noise
-PLACES = {"output_angle", "twist"}  # initial quantities by which the output begins where it was
+OUTPUT_PLACES = {"output_angle", "twist"}  # initial quantities by which the output begins where it was
 END_PERIODS = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
 
@@ -297,7 +297,7 @@ class DrivenLog(ComparedByFields):
         moving = abs(float(smoothed.speed[0])) > MAX_REST_SPEED * float(np.abs(smoothed.speed).max())
         moved = InputMotion.through(grid[:steps], smoothed.angle[:steps], from_rest=not moving)
         moved = replace(moved, initial={**moved.initial, **(initial or {})})
-        begin = VIBRATION_TIME if moving and PLACES.isdisjoint(initial or {}) else 0.0
+        begin = VIBRATION_TIME if moving and OUTPUT_PLACES.isdisjoint(initial or {}) else 0.0
         end = moved.command.duration - END_PERIODS / smoothed.cutoff
         rows = np.flatnonzero((time >= begin) & (time <= end))
         if len(rows) == 0:

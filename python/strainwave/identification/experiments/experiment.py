@@ -14,7 +14,7 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed, quoted
 
 Array = NDArray[np.float64]
-MEASURABLE = (1e-9, 1e9)  # lowest and highest value that the largest of a quantity has on a gear, in SI units
+MEASURABLE_RANGE = (1e-9, 1e9)  # lowest and highest value that the largest of a quantity has on a gear, in SI units
 RELATIVE_STEP = 1e-6  # of a number, or of its size, for a difference of torques that are smooth in it
 
 
@@ -68,7 +68,7 @@ def check_columns(recording: Recording, names: Sequence[str], what: str) -> None
 def sensible(recording: Recording, name: str, unit: str) -> Array:
     """Return a column in another unit; ValueError for a size that no instrument reads on a gear."""
     values = recording.values(name, unit)
-    largest, (low, high) = float(np.abs(values).max()), MEASURABLE
+    largest, (low, high) = float(np.abs(values).max()), MEASURABLE_RANGE
     if largest > high or 0.0 < largest < low:
         raise ValueError(
             f'column "{name}" goes up to {largest:.3g} {unit}; what is measured on a gear lies between {low:g} and {high:g} '

@@ -138,7 +138,9 @@ def with_load(recording: Recording, ratio: float, side: str | None = "input") ->
     speed, torque = recording.values("speed", "rad/s"), recording.values("torque", "N.m")
     if "output_torque" in recording:
         at_output = sensible(recording, "output_torque", "N.m")
-        sign = _sign_of_output(speed, torque, at_output / ratio)
+        tried = {sign: _plain(speed, torque - sign * at_output / ratio, at_output / ratio) for sign in (1.0, -1.0)}
+        possible = [sign for sign, (loss, _) in tried.items() if -MIN_LOSS <= loss < MAX_LOSS]
+        sign = min(possible or tried, key=lambda sign: tried[sign][1])
         load = sign * at_output / ratio
         remark = f"friction is the torque of the motor less that of the output over the ratio of {ratio:g}"
         turned = ", which is measured as the reaction: its sign is turned" if sign < 0.0 else ""
@@ -177,12 +179,6 @@ def _plain(speed: Array, torque: Array, load: Array) -> tuple[float, float]:
     columns = np.stack([way, speed, way * np.abs(load)], axis=1)
     coefficients = solved(columns, torque)
     return float(coefficients[2]), float(np.sum((torque - columns @ coefficients) ** 2))
-
-
-def _sign_of_output(speed: Array, torque: Array, load: Array) -> float:
-    tried = {sign: _plain(speed, torque - sign * load, load) for sign in (1.0, -1.0)}
-    possible = [sign for sign, (loss, _) in tried.items() if -MIN_LOSS <= loss < MAX_LOSS]
-    return min(possible or tried, key=lambda sign: tried[sign][1])
 
 
 def _of_driving(speed: Array, load: Array) -> tuple[str, ...]:

@@ -81,12 +81,7 @@ class MotionLog(ComparedByFields):
 
     @classmethod
     def of(
-        cls,
-        recording: Recording,
-        drive: Drive,
-        *,
-        cutoff: float | None = None,
-        regressors: Sequence[str] = (),
+        cls, recording: Recording, drive: Drive, *, cutoff: float | None = None, regressors: Sequence[str] = ()
     ) -> MotionLog:
         """Return the experiment of a recording with columns time, an angle (input_angle, else output_angle), and an effort.
 

@@ -202,18 +202,14 @@ class TorsionLoop(ComparedByFields):
             ]
         by_unknowns = {"torque_zero": np.ones(n), "twist_zero": -by_shift, "torque_drift": self._behind_middle}
         if "twist_drift" in unknown:
-            by_unknowns["twist_drift"] = self._drift_slope(model, twist_zero, twist_drift)
+            step = RELATIVE_STEP * float(np.ptp(self.twist))  # by differences: dual numbers shift all samples
+            moved = (model.trace(self.path(twist_zero, twist_drift + sense * step)) for sense in (1.0, -1.0))
+            ahead, back = (there[self.compared] for there in moved)
+            by_unknowns["twist_drift"] = np.asarray((ahead - back) / (2.0 * step))
         predicted = (
             torque[self.compared] + unknown.get("torque_zero", 0.0) + torque_drift * self._behind_middle + self.friction(model)
         )
         return predicted[np.newaxis], np.stack([*by_numbers, *(by_unknowns[name] for name in unknown)])[:, np.newaxis]
-
-    def _drift_slope(self, model: Gear, twist_zero: float, twist_drift: float) -> Array:
-        """Return the derivative of the torque by the drift of the twist, by differences: dual numbers shift all samples."""
-        step = RELATIVE_STEP * float(np.ptp(self.twist))
-        moved = (model.trace(self.path(twist_zero, twist_drift + sense * step)) for sense in (1.0, -1.0))
-        ahead, back = (torque[self.compared] for torque in moved)
-        return np.asarray((ahead - back) / (2.0 * step))
 
     def friction(self, model: Gear) -> Array:
         """Return the torque of friction at rest [N.m], shape (n,): that of the input if measured there, else none."""

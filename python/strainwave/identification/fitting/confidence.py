@@ -15,7 +15,7 @@ from strainwave.equality import ComparedByFields
 from strainwave.identification.fitting.fit import REFIT_TOLERANCE, ROUGH_TOLERANCE, Fit, solved_from, solved_problem
 from strainwave.messages import listed, quoted
 from strainwave.presentation import PLAIN_DIGITS, Pictured, Presented, Row
-from strainwave.progress import Progress, by_count
+from strainwave.progress import Progress, by_count, in_turn
 from strainwave.statistics.residuals import correlation_length
 from strainwave.statistics.scale import ONE_SIGMA, student
 
@@ -102,7 +102,7 @@ class Profile(ComparedByFields, Pictured):
         )
 
 
-def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
+def profile(found: Fit, path: str, *, confidence: float = 0.95, progress: Progress = None) -> Profile:
     """Return the profile likelihood of one unknown of a fit: held at one value after the other, with all others fitted anew.
 
     The interval of an estimate takes the model to be linear. This one need not be symmetric, and shows to which side the data
@@ -113,6 +113,7 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
         found: result of `fit`
         path: of a free parameter, or an unknown of the measurement, as the estimates name it
         confidence: of the interval
+        progress: as of `sw.simulate`
 
     Returns:
         The values tried [unit of the parameter] and the cost at each, shape (n,), and the interval.
@@ -170,8 +171,11 @@ def profile(found: Fit, path: str, *, confidence: float = 0.95) -> Profile:
 
         return _search(distance, estimate.value, estimate.sigma, end, float(np.sqrt(limit)), abs(estimate.start))
 
-    below, of_below, first, open_below = towards(low)
-    above, of_above, second, open_above = towards(high)
+    with in_turn(progress, 2) as turn:
+        turn(f"{path}, smaller")
+        below, of_below, first, open_below = towards(low)
+        turn(f"{path}, larger")
+        above, of_above, second, open_above = towards(high)
     values = np.array([*below, estimate.value, *above])
     cost = np.array([*of_below, 0.0, *of_above])
     order = np.argsort(values)
@@ -425,7 +429,7 @@ class Minima(ComparedByFields, Pictured):
         return listed([f"{path} = {value:.5g} {self.units[path]}" for path, value in end.values.items()])
 
 
-def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima:
+def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0, progress: Progress = None) -> Minima:
     """Return the minima at which a fit with other initial values ends.
 
     Each free parameter starts at up to twice or half of its estimate, at random. A drive that vibrates has a minimum at each
@@ -436,6 +440,7 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
         found: result of `fit`
         starts: count of other initial values; each takes about as long as the fit did
         seed: of the random numbers
+        progress: as of `sw.simulate`
 
     Returns:
         The best fit, and each minimum with the number of starts that ended there.
@@ -461,11 +466,13 @@ def minima(found: Fit, starts: int = DEFAULT_STARTS, *, seed: int = 0) -> Minima
     problem, solution = solved_problem(found)
     unknowns, weights = found.plan.unknowns, problem.weights(solution)
     reached = [solution]
-    for _ in range(starts):
-        start = solution.copy()
-        start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
-        with suppress(ValueError, FloatingPointError):  # a model that is not valid there
-            reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_STEPS_OF_START))
+    with in_turn(progress, starts) as turn:
+        for number in range(starts):
+            turn(f"start {number + 1}")
+            start = solution.copy()
+            start[: len(unknowns)] *= MAX_START_FACTOR ** random.uniform(-1.0, 1.0, len(unknowns))
+            with suppress(ValueError, FloatingPointError):  # a model that is not valid there
+                reached.append(problem.solve(start, weights, ROUGH_TOLERANCE, trials=MAX_STEPS_OF_START))
     costs = [problem.cost(x, weights) for x in reached]
     lower = min(costs) < costs[0] - 1.0  # a standard deviation
     best = found

@@ -33,10 +33,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 EXACT_TOLERANCE = 1e-10  # relative, of the cost and of the unknowns; Gauss-Newton steps on small residuals end far below it
 HELD_OUT = ", held out"  # behind the name of an error
-ROUGH_TOLERANCE = 1e-3  # likewise, of the passes that determine the weights of the channels
+ROUGH_TOLERANCE = 1e-3  # likewise, of fits that are compared, and of passes that determine the weights of the channels
 REFIT_TOLERANCE = 1e-6  # likewise, of fits to changed data or with a parameter held
 MAX_ROUGH_PASSES = 4  # of one step each, after the first
-MAX_PASSES = 5  # exact ones
+MAX_EXACT_PASSES = 5  # exact ones
 MAX_START_SIGMA = 3.0  # standard deviations of a prior: an unknown that ended farther off starts at the prior
 MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
 MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
@@ -401,7 +401,12 @@ def problem_of(
     """Return the least squares of unknowns on experiments, with the model before the fit and the samples that take part."""
     first, built = len(asked.unknowns), []
     for experiment, mask, own, links in zip(experiments, masks, _models(model, asked), asked.links, strict=True):
-        _check_branch(experiment, [link.path for link in links])
+        wrong = [link.path for link in links if not link.path.removeprefix("gear.").startswith("stiffness.")]
+        if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
+            raise ValueError(
+                f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from "
+                "stiffness; free parameters of the stiffness alone, or measure a loop that loads and unloads"
+            )
         of_gear = isinstance(experiment, OF_GEAR) and isinstance(own, Drive)
         built.append(FitRecord(experiment, mask, own, links, of_gear, first))
         first = built[-1].nuisances.stop
@@ -426,7 +431,7 @@ def solved_from(problem: Problem, x: Array) -> Fit:
             if _change(before, weights) < MAX_WEIGHT_CHANGE:
                 break
             x = problem.solve(x, weights, ROUGH_TOLERANCE, trials=2)  # where it stands, and one step
-    for _ in range(1 if alone else MAX_PASSES):
+    for _ in range(1 if alone else MAX_EXACT_PASSES):
         before, x = weights, problem.solve(x, weights, EXACT_TOLERANCE)
         weights = problem.weights(x, before)
         if _change(before, weights) < MAX_WEIGHT_CHANGE:
@@ -481,16 +486,6 @@ def _masks(training: Any, names: list[str]) -> list[Mask]:
     if not isinstance(training, list | tuple) or len(training) != len(names):
         raise ValueError(f"training must be a list with one mask or None for each of the {len(names)} records")
     return list(training)
-
-
-def _check_branch(experiment: Experiment, paths: Sequence[str]) -> None:
-    """Raise ValueError for hysteresis of a path that never turns back: it is not separated from the spring."""
-    wrong = [path for path in paths if not path.removeprefix("gear.").startswith("stiffness.")]
-    if wrong and isinstance(experiment, TorsionLoop) and experiment.single_branch:
-        raise ValueError(
-            f"the torsion loop has one branch only: its twist never turns back, so {wrong[0]} is not separated from stiffness; "
-            "free parameters of the stiffness alone, or measure a loop that loads and unloads"
-        )
 
 
 def experiment_of(

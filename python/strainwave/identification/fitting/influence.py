@@ -27,11 +27,11 @@ DESIGNED_PARTS = ("control.", "gear.kinematics.", "kinematics.")  # exact, as th
 REFERENCE_NAMES = (".reference_temperature", ".reference_speed")  # exact: the other numbers of a law are those there
 SIGMA_IF_NOT_STATED = 0.1  # relative, of a kept value whose source states neither spread nor uncertainty
 SIGMA_IF_ASSUMED = 0.5  # relative, of a kept value that is assumed
-MAX_RELATIVE_SIGMA = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
+MAX_SIGMA_OF_DIRECTION = 0.1  # of a change in a direction; the data leave directions with a larger one open (assumed)
 MIN_RELATIVE_CHANGE = 0.02  # of the largest change in a direction; a parameter that changes less takes no part
 EXPONENT_TOLERANCE = 0.03  # relative, between an exponent and a ratio of small whole numbers
-EXPONENTS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
-MIN_SINGULAR = 1e-9  # of the largest singular value; directions with a smaller one change nothing
+SIMPLE_EXPONENTS = sorted({sign * a / b for a in (1, 2, 3) for b in (1, 2, 3) for sign in (1, -1)})
+MIN_SINGULAR_OF_DIRECTION = 1e-9  # of the largest singular value; directions with a smaller one change nothing
 
 
 # ---- Parameters kept -------------------------------------------------------------------------------------------------
@@ -189,7 +189,7 @@ class Combination(ComparedByFields, Statement):
         return f"{len(self.paths)} parameters are determined only together: the prediction hardly changes with {changes}"
 
 
-def combinations(found: Fit, *, max_relative_sigma: float = MAX_RELATIVE_SIGMA) -> tuple[Combination, ...]:
+def combinations(found: Fit, *, max_relative_sigma: float = MAX_SIGMA_OF_DIRECTION) -> tuple[Combination, ...]:
     """Return the parameters of the model that a fit determines only in combination, the least known first.
 
     Directions in which the parameters can change, each relative to its size, without a change of what is predicted that the
@@ -273,7 +273,7 @@ def _directions(rows: Array, chosen: list[int], size: Array, wider: float) -> tu
         columns = columns - basis @ (basis.T @ columns)
     _, singular, directions = np.linalg.svd(columns, full_matrices=True)
     singular = np.append(singular, np.zeros(len(chosen) - len(singular)))
-    dead = singular <= MIN_SINGULAR * singular.max(initial=0.0)
+    dead = singular <= MIN_SINGULAR_OF_DIRECTION * singular.max(initial=0.0)
     with np.errstate(divide="ignore"):
         sigmas = np.where(dead, np.inf, wider / np.where(dead, 1.0, singular))
     order = np.argsort(-sigmas, kind="stable")
@@ -288,7 +288,7 @@ def _formula(paths: tuple[str, ...], units: list[str], values: Array, moves: Arr
         swapped = _formula(paths[::-1], units[::-1], values[::-1], moves[::-1])
         return None if swapped is None else (*swapped[:2], swapped[2][::-1], swapped[3])
     power = -(moves[0] / values[0]) / (moves[1] / values[1])  # of the second, where the first has 1
-    nearest = min(EXPONENTS, key=lambda ratio: abs(ratio - power))
+    nearest = min(SIMPLE_EXPONENTS, key=lambda ratio: abs(ratio - power))
     whole = abs(nearest - power) <= EXPONENT_TOLERANCE * abs(nearest)
     if units[0] == units[1] and not (whole and nearest < 0.0):
         factor = -moves[0] / moves[1]

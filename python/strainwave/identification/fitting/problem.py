@@ -26,7 +26,7 @@ MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step;
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 LossName = Literal["linear", "soft_l1"]
-AMPLITUDES = ("amplitude", "torque")  # in a name in place of "phase"
+AMPLITUDE_NAMES = ("amplitude", "torque")  # in a name in place of "phase"
 
 
 @dataclass(frozen=True)
@@ -473,7 +473,7 @@ class Waves:
         pairs = [
             (places[path], phase)
             for name, phase in places.items() if "phase" in name
-            for path in (name.replace("phase", amplitude) for amplitude in AMPLITUDES) if path in places
+            for path in (name.replace("phase", amplitude) for amplitude in AMPLITUDE_NAMES) if path in places
         ]  # fmt: skip
         pairs = [
             (own, phase) for own, phase in pairs

@@ -78,7 +78,7 @@ def between_encoders(
         remarks=tuple(_remarks(elastic, scale, taken)),
         checks=tuple(_inertias(elastic, scale, estimates, taken, source)),
         pictures=(
-            *([picture_of_twist(elastic.fit)] if has_stiffness else []),
+            *([picture_of_twist(elastic.fit, "A" if taken.in_current else "N.m")] if has_stiffness else []),
             Picture(curves_of_shafts(elastic.fit), title="between the shafts", model=elastic.name),
         ),
         between=elastic.fit,
@@ -288,7 +288,7 @@ def _remarks(found: ElasticCandidate, scale: _Scale, taken: PreparedLog) -> Iter
     torque = "A" if taken.in_current else "N·m"
     of = "gravity" if scale.path == GRAVITY_PATH else "inertia of the load"
     yield (
-        f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on data held out. "
+        f"between the encoders: {found.name}; {found.error:.2g} rad of {found.twist:.2g} rad are left on held-out data. "
         f"The gear transmits up to {found.reach:.3g} {torque}: what it does beyond is not determined. Torques count from "
         f"the {of}"
     )
@@ -339,8 +339,13 @@ def _spring(found: Any, before: Any, reach: float) -> Any:
     return found
 
 
-def picture_of_twist(fit: Fit) -> Picture:
-    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits."""
+def picture_of_twist(fit: Fit, unit: str) -> Picture:
+    """Return the picture of the twist between both encoders of a log over the torque that the gear transmits.
+
+    Args:
+        fit: of the log
+        unit: of the torque, N.m, or A if the torque constant is not known
+    """
     part = fit.parts[0]
     log, gear = part.experiment, part.model.gear
     assert isinstance(log, DrivenLog)
@@ -351,7 +356,7 @@ def picture_of_twist(fit: Fit) -> Picture:
         "twist": measured - modelled.mean(),
         "modelled": modelled - modelled.mean(),
     }
-    units = {"torque": "N.m", "twist": "rad", "modelled": "rad"}
+    units = {"torque": unit, "twist": "rad", "modelled": "rad"}
     return Picture(Recording(columns, units), "loop", "twist, at the output", "twist over torque")
 
 

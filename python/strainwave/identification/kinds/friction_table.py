@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
-from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, written
+from strainwave.identification.candidates.friction import FrictionCandidate, cost_of, fit_friction, plain_error, written
 from strainwave.identification.candidates.steady_shapes import is_loaded
 from strainwave.identification.checks.sizes import (
     friction_of_table,
@@ -40,7 +40,7 @@ from strainwave.identification.reading.roles import (
 )
 from strainwave.identification.results.file_result import FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
-from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before
+from strainwave.identification.results.identifiability import JudgedFit, with_friction_at
 from strainwave.identification.results.pictures import Picture, curves_of
 from strainwave.identification.results.prediction import (
     Prediction,
@@ -224,12 +224,11 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     left, varies = best.fit.residuals[0][order], float(np.std(experiment.torque))
     shaped = judged_shape(left, {"the speed": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
-    estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
+    fit, estimates = fitted.with_set_before(known)
     if any(each.why for each in estimates) and not whole.failed:
         speeds = np.quantile(np.abs(experiment.speed), np.linspace(0.0, 1.0, 9)).tolist()
         paths = [each.path for each in best.fit.estimates]
-        again, estimates = with_set_before(fit, estimates, known, "gear.")
-        fit = written(replace(best, fit=again), gear, experiment)
+        fit = written(replace(best, fit=fit), gear, experiment)
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
     estimates = tuple(each.resting_on(uncertain) for each in estimates)
     result = FileResult(
@@ -239,7 +238,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
-            samples=len(experiment.torque),
+            plain_error(experiment, best.fit.training), samples=len(experiment.torque),
         ),
         candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
     )  # fmt: skip

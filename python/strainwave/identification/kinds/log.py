@@ -184,18 +184,15 @@ def _of_both_shafts(motions: Sequence[Column]) -> tuple[list[Column], list[str]]
             for column, side in sides:
                 sided[sided.index(column)] = replace(column, channel=column.channel._replace(side=side))
             why.append(why_side)
-        elif len(both) == 2 and any(is_open) and not all(is_open) and _are_apart(both):
+        elif len(both) == 2 and any(is_open) and not all(is_open):
             named, other = both if is_open[1] else both[::-1]
+            differ = np.nanmax(np.abs(both[0].si - both[1].si)) > 0.0
+            if not (differ and abs(_slope(both[0].si, both[1].si) - 1.0) < MAX_REFLECTED):
+                continue
             of_other: Side = "output" if named.channel.side == "input" else "input"
             sided[sided.index(other)] = replace(other, channel=other.channel._replace(side=of_other))
             why.append(f"{other.name} is recorded with {named.name}, from which it differs: it is that of the {of_other}")
     return sided, why
-
-
-def _are_apart(both: Sequence[Column]) -> bool:
-    """True for two motions that are alike, but not the same."""
-    first, second = (column.si for column in both)
-    return bool(np.nanmax(np.abs(first - second)) > 0.0) and abs(_slope(first, second) - 1.0) < MAX_REFLECTED
 
 
 @np.errstate(all="ignore")

@@ -10,7 +10,7 @@ import numpy as np
 
 from strainwave import Drive, loads, motor
 from strainwave.equality import ComparedByFields
-from strainwave.files.entries import OPPOSITE
+from strainwave.files.entries import OPPOSITE_SENSE
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.coupling import are_numbers, coupled, in_order
@@ -24,7 +24,7 @@ from strainwave.messages import listed
 from strainwave.questions import Answer, QuestionError
 
 RECORDER_BIAS = 0.05  # of the rotor's inertia: a current recorded where a controller has just acted shows it larger (assumed)
-UNUSED = {"speed", "temperature"}  # constants that a log is not fitted with
+UNUSED_CONSTANTS = {"speed", "temperature"}  # constants that a log is not fitted with
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ def log_of(file: Recognised, known: GearSoFar) -> PreparedLog:
     if fit_plain(log, drive).sense < 0.0:
         of_output = drive.gear.kinematics.ratio < 0.0 and log.effort != "joint_torque"
         how = "in the sense of the output, which turns against the input" if of_output else "against the motion"
-        opposite = f"{log.effort} {OPPOSITE}{log.effort} of the model"
+        opposite = f"{log.effort} {OPPOSITE_SENSE}{log.effort} of the model"
         remarks.append(f"{log.effort} is counted {how}: its sign is turned round, {opposite}")
         recording = recording.with_column(log.effort, -recording[log.effort], recording.unit(log.effort))
         log = MotionLog.of(recording, drive, regressors=file.regressors)
@@ -141,7 +141,7 @@ def _joint(file: Recognised) -> str:
 def _drive(file: Recognised, gear_set: GearSet) -> tuple[Drive, list[str], bool]:
     """Return the drive of a log, with the motor of the set or of the mapping; remarks; and True if torques are in A."""
     constants, remarks, gear = file.constants, list[str](), gear_set.gear
-    if unused := sorted(constants.keys() & UNUSED):
+    if unused := sorted(constants.keys() & UNUSED_CONSTANTS):
         remarks.append(f"given, but not used of a log: {listed(unused)}")
     given = gear_set.motor
     constant = constants.get("torque_constant", getattr(given, "torque_constant", None))

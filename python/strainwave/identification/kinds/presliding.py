@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from strainwave.analysis.branches import turning_points
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.presliding import PreslidingCandidate, PreslidingLoop, fit_presliding
+from strainwave.identification.candidates.presliding import BRANCH_FOLDS, PreslidingCandidate, PreslidingLoop, fit_presliding
+from strainwave.identification.candidates.torsion import plain_error
 from strainwave.identification.checks.sizes import friction_at_rest
 from strainwave.identification.checks.unexplained import MAX_SHARE_OF_PRESLIDING, Left, error_left, only_if_explained
 from strainwave.identification.kinds.at_rest import (
@@ -55,10 +56,13 @@ class Presliding(AtRest):
         loop, name = PreslidingLoop.of(recording), file.path.name
         best, *_ = fit_presliding(loop)
         begun, largest = _begun(loop), 0.5 * float(np.ptp(loop.torque))
+        branch = np.searchsorted(loop.turns, np.flatnonzero(begun), "right") % BRANCH_FOLDS
+        parts = [branch == part for part in np.unique(branch)]
+        plain = plain_error(loop.angle[begun], loop.torque[begun], parts) if len(parts) > 1 else np.nan
         slides = _sliding_beyond(largest, known)
         held_out = HeldOut(
             "each part of the loop, predicted from the others", "torque at rest", "N.m", best.error,
-            float(np.std(loop.torque[begun])), samples=int(begun.sum()),
+            float(np.std(loop.torque[begun])), plain, samples=int(begun.sum()),
         )  # fmt: skip
         whole = error_left({held_out.channel: Left(held_out.error, held_out.zero, "N.m", MAX_SHARE_OF_PRESLIDING)}, name)
         slid = best.reach >= 1.0 and slides is None

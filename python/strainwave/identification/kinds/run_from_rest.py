@@ -21,7 +21,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, channels, commanded, measured, names_of
 from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit, with_set_before
+from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit
 from strainwave.identification.results.pictures import pictures_of_channels
 from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
@@ -63,9 +63,7 @@ class RunFromRest(Kind):
         if whole.failed:
             whole = _with_cause(whole, log_fit.fit, file, drive, free)
         fitted = JudgedFit(log_fit.fit, name, kept, not whole.failed, prefix="")
-        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), log_fit.fit
-        if not whole.failed:
-            fit, estimates = with_set_before(fit, estimates, known)
+        fit, estimates = fitted.with_set_before(known)
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
             (*file.remarks, *_remarks(recording, log, log_fit.fit, kept, known)), (whole,),

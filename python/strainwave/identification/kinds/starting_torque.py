@@ -22,7 +22,7 @@ from strainwave.statistics.linear_fit import linear_fit
 
 Array = NDArray[np.float64]
 
-CONDITIONS = {"temperature": "K", "load_torque": "N.m"}  # with which it changes, and their units
+UNITS_OF_TRIAL = {"temperature": "K", "load_torque": "N.m"}  # with which it changes, and their units
 
 
 class StartingTorque(Kind):
@@ -57,7 +57,9 @@ class StartingTorque(Kind):
                 "that of the input, or a log of the joint, driven from its output"
             )
         name, torque = file.path.name, np.abs(file.recording.values("torque", "N.m"))
-        conditions = {each: file.recording.values(each, unit) for each, unit in CONDITIONS.items() if each in file.recording}
+        conditions = {
+            each: file.recording.values(each, unit) for each, unit in UNITS_OF_TRIAL.items() if each in file.recording
+        }
         varying = {each: np.abs(values) for each, values in conditions.items() if np.ptp(values) > 0.0}
         if "temperature" in varying:
             varying["temperature"] = varying["temperature"] - varying["temperature"].mean()
@@ -75,7 +77,7 @@ class StartingTorque(Kind):
             f"{len(torque)} trials: {level:.4g} ± {sigma:.2g} N·m{at}{', without load' if 'load_torque' in varying else ''}"
         ]
         for each, slope, of_slope in zip(varying, slopes, of_slopes, strict=True):
-            for_each = f"for each {CONDITIONS[each].replace('.', '·')} of {each.replace('_', ' ')}"
+            for_each = f"for each {UNITS_OF_TRIAL[each].replace('.', '·')} of {each.replace('_', ' ')}"
             remarks.append(f"it changes by {slope:.3g} ± {of_slope:.2g} N·m {for_each}; a table of friction determines the law")
         after, below = with_breakaway(known, estimate, name)
         checks = tuple(friction_at_rest(level, known.initial.gear, name))

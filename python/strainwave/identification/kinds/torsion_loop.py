@@ -13,7 +13,14 @@ from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
 from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion import InputFriction, Nothing, TorsionCandidate, fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import (
+    InputFriction,
+    Nothing,
+    TorsionCandidate,
+    fit_loop,
+    held_out_blocks,
+    plain_error,
+)
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import explained, judged_shape
@@ -26,7 +33,7 @@ from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.identifiability import JudgedFit, with_set_before
+from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.pictures import Picture, curves_of
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
@@ -40,7 +47,7 @@ MIN_STIFFNESS_AT_OUTPUT = 2000.0  # N.m/rad: over the smallest ratio squared, 90
 MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
 MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
-SERIES = "series_stiffness"  # of a spring behind the gear
+SERIES_STIFFNESS = "series_stiffness"  # of a spring behind the gear
 FRICTION_KINDS = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
@@ -120,9 +127,7 @@ class Torsion(Kind):
         varies = float(np.std(best.fit.experiment.measured))
         shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
-        estimates, fit = tuple(fitted.estimates(known.gear_set.sources, known.determined_by)), best.fit
-        if not whole.failed:
-            fit, estimates = with_set_before(fit, estimates, known, "gear.")
+        fit, estimates = fitted.with_set_before(known)
         result = FileResult(
             name, file, best.name, estimates,
             (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start), *shaped.remarks),
@@ -135,7 +140,7 @@ class Torsion(Kind):
             assumed = {"series stiffness": f"{abs(in_series):.4g} N·m/rad, which the recorder assumed and did not measure"}
             unmeasured = tuple(
                 replace(
-                    each, path=each.path.replace("gear.stiffness.k", SERIES), sigma=np.inf, why=ASSUMED_BY_RECORDER,
+                    each, path=each.path.replace("gear.stiffness.k", SERIES_STIFFNESS), sigma=np.inf, why=ASSUMED_BY_RECORDER,
                     in_combination=False,
                 )
                 for each in estimates
@@ -260,7 +265,8 @@ def _held_out(best: TorsionCandidate) -> HeldOut | None:
     if not rows.any():
         return None
     error, varies = float(best.fit.rms(held_out=True)[0]), float(np.std(best.loop.torque[rows]))
-    return HeldOut("blocks of the loop", "torque", "N.m", error, varies, samples=int(rows.sum()))
+    plain = plain_error(best.loop.twist, best.loop.torque, [rows])
+    return HeldOut("blocks of the loop", "torque", "N.m", error, varies, plain, samples=int(rows.sum()))
 
 
 def _remarks(

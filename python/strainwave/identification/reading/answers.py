@@ -91,9 +91,6 @@ def _ways_on(
     """Return an answer with what a file is then; with each answer to the question that follows, if one does.
 
     Empty if it is an answer to what was `answered` before: units of a time that no unit makes right lead in a circle.
-
-    Raises:
-        ValueError: the file cannot be read so
     """
     mapping = stated.updated(FileMapping(**answer.given))
     if answer.files or mapping == stated or not answer.stated.isdisjoint(answered):

@@ -64,19 +64,19 @@ def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = 
     """Return the columns with a known name, but for channels that a person named."""
     taken = {column.position for column in by_user}
     columns = []
-    for position, (label, content, found) in enumerate(
+    for position, (label, content, named) in enumerate(
         zip(table.labels, table.contents, _meanings(table, mapping), strict=True)
     ):
         if content == "other" or position in taken:
             continue
-        is_time = found is not None and found.quantity == "time"
-        if found is None or (content == "dates" and not is_time) or (is_time and "rate" in mapping.constants):
+        is_time = named is not None and named.quantity == "time"
+        if named is None or (content == "dates" and not is_time) or (is_time and "rate" in mapping.constants):
             continue
-        sided = found.quantity in ("angle", "speed", "torque") and not found.commanded
-        channel = Channel(found.quantity, found.side if sided else None, found.commanded)
+        sided = named.quantity in ("angle", "speed", "torque") and not named.commanded
+        channel = Channel(named.quantity, named.side if sided else None, named.commanded)
         if not any(column.channel == channel and column.own for column in by_user):
-            unit = "s" if content == "dates" else found.unit or label.unit or None
-            columns.append(Column(position, label, channel, found.which, found.robot, unit=unit, estimated=found.estimated))
+            unit = "s" if content == "dates" else named.unit or label.unit or None
+            columns.append(Column(position, label, channel, named.which, named.robot, unit=unit, estimated=named.estimated))
     columns = _of_measured_structure(columns)
     certain = {(column.channel, column.which) for column in columns if not column.estimated}
     return _numbered_apart([each for each in columns if not each.estimated or (each.channel, each.which) not in certain])
@@ -85,11 +85,11 @@ def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = 
 def _meanings(table: OpenTable, mapping: FileMapping) -> list[Meaning | None]:
     """Return the meaning of each column; by its unit alone only if no other column has a measurement of that quantity."""
     labels = [label._replace(unit=None) if label.name in mapping.units else label for label in table.labels]
-    found = [meaning(label) for label in labels]
-    named = {each.quantity for each in found if each is not None and not each.commanded}
-    by_unit = [meaning_by_unit(label) if own is None else None for label, own in zip(labels, found, strict=True)]
+    meanings = [meaning(label) for label in labels]
+    named = {each.quantity for each in meanings if each is not None and not each.commanded}
+    by_unit = [meaning_by_unit(label) if own is None else None for label, own in zip(labels, meanings, strict=True)]
     return [
-        own or (other if other and other.quantity not in named else None) for own, other in zip(found, by_unit, strict=True)
+        own or (other if other and other.quantity not in named else None) for own, other in zip(meanings, by_unit, strict=True)
     ]
 
 
@@ -156,13 +156,8 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
 
 
 def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
-    """Return the columns that a person named.
-
-    Raises:
-        ValueError: the file has no such column, or several
-        QuestionError: it has one for each joint
-    """
-    found = []
+    """Return the columns that a person named."""
+    columns = []
     wanted = [(name, each) for name, each in mapping.columns.items() if name not in LISTED_CHANNELS]
     wanted += [
         (name, each.strip()) for name in LISTED_CHANNELS for each in mapping.columns.get(name, "").split(",") if each.strip()
@@ -174,13 +169,13 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
         unit = label.unit or by_name_unit or unit_in(label.name, channel.quantity)
         unit = "s" if table.contents[place] == "dates" else unit
         if name == "regressors":  # of one, any unit is that of torque over that of its share
-            found.append(Column(place, label, channel, by_user=True, regressor=True, unit=channel.unit))
+            columns.append(Column(place, label, channel, by_user=True, regressor=True, unit=channel.unit))
             continue
         neighbour = name == "other_angles"
         which = ((by_name.which if by_name else "") or str(place + 1)) if neighbour else ""
-        found.append(Column(place, label, channel, which, by_user=True, neighbour=neighbour, unit=unit))
-    sided = {each.position for each in found if each.channel.quantity == "torque" and each.channel.side}
-    return [each for each in found if each.channel != CHANNELS["torque"] or each.position not in sided]
+        columns.append(Column(place, label, channel, which, by_user=True, neighbour=neighbour, unit=unit))
+    sided = {each.position for each in columns if each.channel.quantity == "torque" and each.channel.side}
+    return [each for each in columns if each.channel != CHANNELS["torque"] or each.position not in sided]
 
 
 def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> int:
@@ -216,12 +211,12 @@ def _of_one_joint(table: OpenTable, columns: Sequence[Column], mapping: FileMapp
         groups.setdefault(column.channel, []).append(column)
     several = [group for group in groups.values() if len(group) > 1]
     joints = list(dict.fromkeys(column.which for group in several for column in group if column.which))
-    known = joints or list(dict.fromkeys(column.which for column in columns if column.which))
-    if mapping.joint is not None and known:
-        joint = mapping.joint if mapping.joint in known else which_of(words_of(mapping.joint))  # J3 is joint 3
-        if joint not in {*known, *(which_of(words_of(column.label.name)) for column in by_user)}:
-            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(known)}"))
-        return _with_neighbours(columns, joint, known)
+    which_joints = joints or list(dict.fromkeys(column.which for column in columns if column.which))
+    if mapping.joint is not None and which_joints:
+        joint = mapping.joint if mapping.joint in which_joints else which_of(words_of(mapping.joint))  # J3 is joint 3
+        if joint not in {*which_joints, *(which_of(words_of(column.label.name)) for column in by_user)}:
+            raise ValueError(one_line(f"{table.file} has no joint {quoted(mapping.joint)}; it has {listed(which_joints)}"))
+        return _with_neighbours(columns, joint, which_joints)
     quantities = {column.channel.quantity for column in columns} - set(USUAL_FIRST)
     if len(several) == 1 and len(several[0]) == 2 and quantities == {"angle"}:  # two encoders
         return list(columns)
@@ -241,11 +236,7 @@ def _with_neighbours(columns: Sequence[Column], joint: str, known: Sequence[str]
 
 
 def _taken(group: Sequence[Column], joints: Sequence[str]) -> Sequence[Column]:
-    """Return the column of a channel that is taken; two, if their sizes show which is that of the input.
-
-    Raises:
-        QuestionError: each may be the channel
-    """
+    """Return the column of a channel that is taken; two, if their sizes show which is that of the input."""
     plain = [column for column in group if not column.which] if len(group) > 1 else group
     channel = group[0].channel
     if len(plain) == 2 and channel.quantity in ("angle", "speed") and channel.side is None and channel.measured:

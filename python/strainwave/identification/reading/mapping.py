@@ -174,18 +174,18 @@ class MappingFile:
 
 def _mapping(place: str, section: Mapping[str, Any]) -> FileMapping:
     """Return the mapping in a section of a TOML file."""
-    known = [each.name for each in fields(FileMapping)]
-    found: dict[str, Any] = {}
+    keys = [each.name for each in fields(FileMapping)]
+    statements: dict[str, Any] = {}
     for name, value in section.items():
-        _check_known(f"{place}{name}", name, known, "keys")
+        _check_known(f"{place}{name}", name, keys, "keys")
         if name not in TABLE_ENTRIES:
-            found[name] = _entry(f"{place}{name}", name, value)
+            statements[name] = _entry(f"{place}{name}", name, value)
         elif isinstance(value, dict):
-            found[name] = {key: _entry(f"{place}{name}.{key}", name, each) for key, each in value.items()}
+            statements[name] = {key: _entry(f"{place}{name}.{key}", name, each) for key, each in value.items()}
         else:
             raise ValueError(f"{place}{name} = {shortened(value)} must be a table, with a line for each channel or constant")
     try:
-        return FileMapping(**found)
+        return FileMapping(**statements)
     except ValueError as error:
         message = re.sub("--(column|constant) ", r"\1s.", str(error)).replace("--sign ", "sign.")
         raise ValueError(f"{place}{message}") from None

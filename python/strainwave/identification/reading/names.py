@@ -210,8 +210,8 @@ def meaning_by_unit(label: Label) -> Meaning | None:
     >>> meaning_by_unit(Label("table_deg", "table_deg", None))
     Meaning(quantity='angle', side=None, commanded=False, which='table', unit='deg', robot=False, estimated=False)
     """
-    found = ((quantity, *_without_unit(label.name, quantity)) for quantity in MEASURED_BY_UNIT)
-    by_unit = next(((quantity, rest, unit) for quantity, rest, unit in found if unit and len(unit) > 1), None)
+    by_quantity = ((quantity, *_without_unit(label.name, quantity)) for quantity in MEASURED_BY_UNIT)
+    by_unit = next(((quantity, rest, unit) for quantity, rest, unit in by_quantity if unit and len(unit) > 1), None)
     if by_unit is None or any(word in OTHER_WORDS for word in words_of(label.name)):
         return None
     quantity, rest, unit = by_unit
@@ -227,11 +227,11 @@ def words_of(name: str) -> list[str]:
     plain = unicodedata.normalize("NFKD", name.translate(_GREEK_LETTERS))
     plain = "".join(each for each in plain if not unicodedata.combining(each))
     apart = _one_word(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", plain))
-    found: list[str] = []
+    words: list[str] = []
     for word in re.findall(r"[a-z]+|\d+", apart.casefold()):
-        found += SYMBOLS.get(word) or _parts(word) or (word.endswith("s") and _parts(word[:-1])) or [word]
-    is_of_drive = found[1:2] == ["q"] and found[0] in ("i", "u")  # i_q and u_q of a field-oriented one
-    return [f"{found[0]}q", *found[2:]] if is_of_drive else found
+        words += SYMBOLS.get(word) or _parts(word) or (word.endswith("s") and _parts(word[:-1])) or [word]
+    is_of_drive = words[1:2] == ["q"] and words[0] in ("i", "u")  # i_q and u_q of a field-oriented one
+    return [f"{words[0]}q", *words[2:]] if is_of_drive else words
 
 
 def is_at_rest(name: str) -> bool:
@@ -316,15 +316,17 @@ def _quantity(words: list[str], unit: str | None) -> tuple[Quantity | None, int]
     named = [("current" if _is_current([words[place]], unit) else QUANTITY_OF[words[place]], place) for place in places]
     twist = [each for each in named if each[0] == "twist"]
     torque = [each for each in named if each[0] == "torque"]
-    found = (twist if not torque else []) or named[::-1]
+    candidates = (twist if not torque else []) or named[::-1]
     if unit is not None:
-        found = [each for each in found if measures(unit, UNITS[each[0]])] or found
+        candidates = [each for each in candidates if measures(unit, UNITS[each[0]])] or candidates
         fits = [quantity for quantity, standard in UNITS.items() if quantity != "twist" and measures(unit, standard)]
-        if fits and not (found and measures(unit, UNITS[found[0][0]])):
-            return (fits[0], places[-1] if places else -1) if not found or len(words[found[0][1]]) == 1 else (None, -1)
-    if not found:
+        if fits and not (candidates and measures(unit, UNITS[candidates[0][0]])):
+            return (
+                (fits[0], places[-1] if places else -1) if not candidates or len(words[candidates[0][1]]) == 1 else (None, -1)
+            )
+    if not candidates:
         return None, -1
-    quantity, place = found[0]
+    quantity, place = candidates[0]
     if quantity == "angle" and "dot" in words[place + 1 :]:
         quantity = "speed"
     return quantity, place
@@ -348,8 +350,8 @@ def is_of_joint(name: str, stem: str, joint: str | None = None) -> bool:
 def which_of(words: list[str]) -> str:
     """Return the words of a channel but for quantity and side: the number of a joint, or its name."""
     numbers = [word.lstrip("0") or "0" for word in words if word.isdigit()]
-    known = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED_WORDS, *NEUTRAL_WORDS, *INDEX_LETTERS, *ESTIMATE_WORDS, *SHARE_UNITS, "dot"}
-    return ".".join(numbers) or "_".join(word for word in words if word not in known)
+    meant = {*QUANTITY_OF, *_SIDE_OF, *COMMANDED_WORDS, *NEUTRAL_WORDS, *INDEX_LETTERS, *ESTIMATE_WORDS, *SHARE_UNITS, "dot"}
+    return ".".join(numbers) or "_".join(word for word in words if word not in meant)
 
 
 # ---- Channels --------------------------------------------------------------------------------------------------------
@@ -436,8 +438,8 @@ def joint_in(path: Path) -> str:
     >>> joint_in(Path("joint_3_trapez.csv")), joint_in(Path("q2_run_1.csv")), joint_in(Path("run_2.csv"))
     ('3', '2', '')
     """
-    found = {match["number"] for match in _JOINT_IN_NAME.finditer(path.stem.casefold())}
-    return found.pop() if len(found) == 1 else ""
+    joints = {match["number"] for match in _JOINT_IN_NAME.finditer(path.stem.casefold())}
+    return joints.pop() if len(joints) == 1 else ""
 
 
 def speed_in(path: Path) -> float | None:
@@ -448,9 +450,9 @@ def speed_in(path: Path) -> float | None:
     >>> speed_in(Path("run_-20rpm.csv")), speed_in(Path("J2_0p5_rad_s.txt")), speed_in(Path("run_20.csv"))
     (-2.0943951023931953, 0.5, None)
     """
-    found = list(_SPEED_IN_NAME.finditer(re.sub(r"_(?=[+-]?[0-9])|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
-    if len(found) != 1:
+    speeds = list(_SPEED_IN_NAME.finditer(re.sub(r"_(?=[+-]?[0-9])|_(?=neg|minus|pos|plus)", " ", path.stem.casefold())))
+    if len(speeds) != 1:
         return None
-    (match,) = found
+    (match,) = speeds
     sign = -1.0 if (match["sign"] or "").startswith(("-", "neg", "minus")) else 1.0
     return sign * convert(float(match["number"].replace("p", ".")), SPEED_UNITS_OF_FILES[match["unit"]], "rad/s")

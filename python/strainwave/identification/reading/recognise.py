@@ -213,11 +213,7 @@ def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
 
 
 def _roles_or_question(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-    """Return the kind of a file, and the channel of each column.
-
-    Raises:
-        QuestionError: several are possible, or none; then it is asked which of the columns without a known name is one
-    """
+    """Return the kind of a file, and the channel of each column."""
     try:
         return _roles([column for column in columns if column.own], mapping)
     except QuestionError as question:
@@ -231,11 +227,7 @@ def _roles_or_question(table: OpenTable, columns: Sequence[Column], mapping: Fil
 
 
 def _roles(columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
-    """Return the kind of a set of columns, and the channel of each; the kinds that need most are asked first.
-
-    Raises:
-        QuestionError: several kinds or channels are possible, or none
-    """
+    """Return the kind of a set of columns, and the channel of each; the kinds that need most are asked first."""
     if mapping.kind is not None:
         return kind_named(mapping.kind).roles(columns, mapping)
     kinds = [kind_named(name) for name in KINDS]
@@ -270,11 +262,7 @@ def _of_unused(names: Collection[str]) -> list[str]:
 
 
 def _check_parts(source: MeasurementFile) -> None:
-    """Refuse one file of a recording that has several, and files in which the numbers of several joints follow each other.
-
-    Raises:
-        QuestionError: it is one; states the other files, or how to convert it
-    """
+    """Refuse one file of a recording that has several, and files in which the numbers of several joints follow each other."""
     joints = dict[str, int]()
     for part in source.parts or (source,):
         if len(part.raw.labels) == 1 and nameless(part.raw):
@@ -293,11 +281,7 @@ def _check_parts(source: MeasurementFile) -> None:
 
 
 def _check_named_effort(source: MeasurementFile, mapping: FileMapping) -> None:
-    """Ask for the torque or current of columns without names, whose layout contains the motion alone.
-
-    Raises:
-        QuestionError: no one named it; names the options
-    """
+    """Ask for the torque or current of columns without names, whose layout contains the motion alone."""
     named, layout = {CHANNELS[CHANNEL_ALIASES.get(name, name)].quantity for name in mapping.columns}, source.layout
     if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
         is_timed = "rate" in mapping.constants or any(label.name == "time" for label in source.table.labels)
@@ -307,7 +291,9 @@ def _check_named_effort(source: MeasurementFile, mapping: FileMapping) -> None:
 def _with_single_numbers(table: OpenTable, mapping: FileMapping) -> tuple[FileMapping, list[str]]:
     """Return the mapping, with the rate of rows without time if a single number in the file is one; and remarks."""
     singles = dict(table.singles) if isinstance(table, ArrayTable) else {}
-    timed = "time" in mapping.columns or any((found := meaning(label)) and found.quantity == "time" for label in table.labels)
+    timed = "time" in mapping.columns or any(
+        (channel := meaning(label)) and channel.quantity == "time" for label in table.labels
+    )
     remarks = []
     rates = {name: rate for name, value in singles.items() if (rate := _rate(name.rpartition(".")[2].casefold(), value))}
     if rates and not timed and "rate" not in mapping.constants:
@@ -329,9 +315,11 @@ def _rate(name: str, value: float) -> float | None:
 
 def _with_speed_of_name(columns: Sequence[Column], mapping: FileMapping, path: Path) -> tuple[FileMapping, tuple[str, ...]]:
     """Return the mapping, with the speed in the name of a file whose columns contain no motion; and what determines it."""
-    known = {column.channel.quantity for column in columns if column.channel.measured}
-    moves = known & {"time", "speed"} or mapping.constants.keys() & {"rate", "speed"} or mapping.kind not in (None, "effort")
-    speed = None if moves or not known & {"torque", "current"} else speed_in(path)
+    quantities = {column.channel.quantity for column in columns if column.channel.measured}
+    moves = (
+        quantities & {"time", "speed"} or mapping.constants.keys() & {"rate", "speed"} or mapping.kind not in (None, "effort")
+    )
+    speed = None if moves or not quantities & {"torque", "current"} else speed_in(path)
     if speed is None:
         return mapping, ()
     why = f"by its name it turned at {speed:.4g} rad/s; otherwise add --constant speed=NUMBER"
@@ -356,11 +344,7 @@ def _unwrap(table: OpenTable, series: dict[str, Array], columns: Mapping[str, Co
 def _in_time(
     series: dict[str, Array], columns: Mapping[str, Column], kind: str, mapping: FileMapping
 ) -> tuple[dict[str, Array], list[str], float]:
-    """Return the rows of a recording in the order of time, remarks, and the stamp from which the time is counted [s].
-
-    Raises:
-        ValueError: the kind of measurement needs a time, and there is none
-    """
+    """Return the rows of a recording in the order of time, remarks, and the stamp from which the time is counted [s]."""
     if kind_named(kind).time == "none":
         return series, [], 0.0
     remarks = list[str]()
@@ -387,8 +371,8 @@ def _in_time(
 def _renewed(series: dict[str, Array], columns: Mapping[str, Column]) -> tuple[dict[str, Array], list[str]]:
     """Return the rows in which an angle was renewed, and a remark if it was held between."""
     for name in ("input_angle", "reflected_angle", "output_angle"):
-        if name in series and (found := renewed_rows(series[name])) is not None:
-            rows, held = found
+        if name in series and (renewed := renewed_rows(series[name])) is not None:
+            rows, held = renewed
             rate = (len(rows) - 1) / max(float(series["time"][rows[-1]] - series["time"][rows[0]]), 1e-300)
             was = f"{columns[name].name} holds each value for {held} rows: it was sampled at {rate:.3g} Hz"
             remark = f"{was}, and the {len(rows)} rows are kept"

@@ -135,21 +135,21 @@ def needed(columns: Sequence[Column], quantity: Quantity, title: str) -> Column:
     Raises:
         QuestionError: there is none, or several
     """
-    found = measured(columns, quantity)
-    found = found if len(found) == 1 else [column for column in found if column.by_user] or found
-    if len(found) == 1:
-        return found[0]
-    lack = f"each of {names_of(found)} may be it" if found else f"it has {names_of(columns)}"
-    raise QuestionError(f"{title} needs one {quantity}: {lack}", columns_for(quantity, found))
+    candidates = measured(columns, quantity)
+    candidates = candidates if len(candidates) == 1 else [column for column in candidates if column.by_user] or candidates
+    if len(candidates) == 1:
+        return candidates[0]
+    lack = f"each of {names_of(candidates)} may be it" if candidates else f"it has {names_of(columns)}"
+    raise QuestionError(f"{title} needs one {quantity}: {lack}", columns_for(quantity, candidates))
 
 
 def channels(wanted: Mapping[str, Sequence[Column]]) -> dict[str, Column]:
     """Return the column of each channel, of those that may be it; raises as `put`."""
-    found = dict[str, Column]()
+    by_channel = dict[str, Column]()
     for name, columns in wanted.items():
         for column in columns:
-            put(found, name, column)
-    return found
+            put(by_channel, name, column)
+    return by_channel
 
 
 def put(found: dict[str, Column], name: str, column: Column) -> None:
@@ -216,8 +216,8 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
     if side := column.channel.side or given:
         return side, "" if column.channel.side else f"{column.name} is at the {side}, {AS_WAS_GIVEN}"
     if column.robot:
-        found = meaning(column.label)
-        is_word = found is not None and found.robot
+        by_name = meaning(column.label)
+        is_word = by_name is not None and by_name.robot
         why = "what robots call a channel of a joint" if is_word else "a channel of one of several joints"
         return "output", f"{column.name} is {why}: it is taken to be at the output"
     motions = [each for each in others if {each.channel.quantity, column.channel.quantity} == {"angle", "speed"}]
@@ -239,11 +239,7 @@ def side_of_motion(column: Column, others: Sequence[Column], time: Column | None
 
 
 def _check_unit(column: Column, fastest: float) -> None:
-    """Ask for the unit of a motion that is as fast as a motor, but may be that of a joint in degrees.
-
-    Raises:
-        QuestionError: both are possible
-    """
+    """Ask for the unit of a motion that is as fast as a motor, but may be that of a joint in degrees."""
     is_slow = fastest < MAX_JOINT_SPEED and (column.channel.quantity == "speed" or np.ptp(column.si) < MAX_JOINT_RANGE)
     if column.sure or not is_slow:
         return

@@ -146,13 +146,13 @@ def same_as(files: Sequence[Recognised]) -> dict[str, str]:
 
     Of several it is the one with most channels, and the first of those.
     """
-    found: dict[str, str] = {}
+    copies: dict[str, str] = {}
     richest_first = sorted(files, key=lambda file: -len(file.recording.names))
     for place, file in enumerate(richest_first):
-        others = [each for each in richest_first[:place] if str(each.path) not in found and each.kind == file.kind]
+        others = [each for each in richest_first[:place] if str(each.path) not in copies and each.kind == file.kind]
         if (richer := next((each for each in others if _are_alike(each, file)), None)) is not None:
-            found[str(file.path)] = str(richer.path)
-    return found
+            copies[str(file.path)] = str(richer.path)
+    return copies
 
 
 def _are_alike(one: Recognised, other: Recognised) -> bool:

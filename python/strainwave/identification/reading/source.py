@@ -224,12 +224,12 @@ def with_parts(files: Sequence[MeasurementFile]) -> list[MeasurementFile]:
         if file.is_of_one_quantity:
             key = (_named(file.path).parent, _quantity_in(file.path)[1], file.path.suffix.lower())  # type: ignore[index]
         groups.setdefault(key, []).append(file)
-    found = list[MeasurementFile]()
+    recordings = list[MeasurementFile]()
     for group in groups.values():
         quantities = [(_quantity_in(file.path) or ("",))[0] for file in group]
         is_one = 1 < len(group) <= MAX_PARTS and len(set(quantities)) == len(group)
-        found += [replace(group[0], parts=tuple(group))] if is_one else group
-    return found
+        recordings += [replace(group[0], parts=tuple(group))] if is_one else group
+    return recordings
 
 
 def files_of_same_recording(path: Path) -> list[Path]:
@@ -238,7 +238,7 @@ def files_of_same_recording(path: Path) -> list[Path]:
     if own is None or not path.is_file():
         return []
     others = (other for other in path.parent.iterdir() if other.suffix.lower() == path.suffix.lower() and other != path)
-    return sorted(other for other in others if (found := _quantity_in(other)) and found[1] == own[1] and found[0] != own[0])
+    return sorted(other for other in others if (its := _quantity_in(other)) and its[1] == own[1] and its[0] != own[0])
 
 
 def _named(path: Path) -> Path:
@@ -259,11 +259,7 @@ def _quantity_in(path: Path) -> tuple[str, tuple[str, ...]] | None:
 
 
 def _together(parts: Sequence[MeasurementFile]) -> OpenTable:
-    """Return the table of a recording with one file for each quantity.
-
-    Raises:
-        ValueError: the files have different numbers of rows and no time of their own
-    """
+    """Return the table of a recording with one file for each quantity."""
     read = [_Part.of(part) for part in parts]
     angle = next((part for part in read if part.name == "q"), None)
     for place, part in enumerate(read):
@@ -315,8 +311,8 @@ class _Part:
     def _named(name: str, table: OpenTable, series: list[Array]) -> _Part:
         """Return a file whose columns have names: each begins with the quantity if it does not name it."""
         meanings = [meaning(label) for label in table.labels]
-        at = next((place for place, found in enumerate(meanings) if found and found.quantity == "time"), None)
-        names = [label.name if found else f"{name}_{label.name}" for label, found in zip(table.labels, meanings, strict=True)]
+        at = next((place for place, named in enumerate(meanings) if named and named.quantity == "time"), None)
+        names = [label.name if named else f"{name}_{label.name}" for label, named in zip(table.labels, meanings, strict=True)]
         units = [label.unit for label in table.labels]
         if at is None or len(series) == 1:
             return _Part(name, series, None, names, units)
@@ -355,9 +351,9 @@ def other_format(path: Path) -> str | None:
         begin = file.read(MAX_BYTES_READ)
     if separator := _other_separator(begin):
         return f'its columns are separated by "{separator}": separate them by commas, semicolons or tabs'
-    found = next((what for letters, what in FORMAT_BY_BEGINNING.items() if begin.startswith(letters)), None)
-    what = f"its suffix is {path.suffix}, but it is {found}"
-    return None if found is None else f"{what}: export the measurement as CSV with one header line"
+    format_name = next((what for letters, what in FORMAT_BY_BEGINNING.items() if begin.startswith(letters)), None)
+    what = f"its suffix is {path.suffix}, but it is {format_name}"
+    return None if format_name is None else f"{what}: export the measurement as CSV with one header line"
 
 
 def _other_separator(begin: bytes) -> str | None:

@@ -151,7 +151,7 @@ def _are_one_time(table: OpenTable, seconds: int, part: int, size: float) -> boo
 def _with_own_times(table: OpenTable) -> OpenTable:
     """Return the table with channels of equal times under one time, if each channel has an increasing time before it."""
     labels = [label for label in table.labels if label.text]
-    is_time = [(found := meaning(label)) is not None and found.quantity == "time" for label in labels]
+    is_time = [(channel := meaning(label)) is not None and channel.quantity == "time" for label in labels]
     pairs = len(labels) // 2
     if pairs < MIN_PAIRS or len(labels) % 2 or is_time != [True, False] * pairs or isinstance(table, GridTable):
         return table
@@ -182,7 +182,7 @@ def runs_in(table: OpenTable) -> list[TableView]:
     ...     [run.rows for run in runs_in(open_table(Path(folder, "log.csv")))]
     [slice(0, 50, None), slice(50, 100, None)]
     """
-    named = (place for place, label in enumerate(table.labels) if (found := meaning(label)) and found.quantity == "time")
+    named = (place for place, label in enumerate(table.labels) if (channel := meaning(label)) and channel.quantity == "time")
     place = next(named, None)
     if place is None or table.contents[place] == "other" or isinstance(table, GridTable):
         return []
@@ -219,12 +219,12 @@ def run_on(stamps: Array) -> tuple[Array, float]:
 
 def merged(grids: Sequence[Grid]) -> list[Grid]:
     """Return grids, those of equal times as one."""
-    found = list[Grid]()
+    joined = list[Grid]()
     for grid in grids:
-        same = next((at for at, each in enumerate(found) if np.array_equal(each.time, grid.time)), len(found))
-        before = found[same].columns if same < len(found) else {}
-        found[same : same + 1] = [Grid(grid.time, {**before, **grid.columns})]
-    return found
+        same = next((at for at, each in enumerate(joined) if np.array_equal(each.time, grid.time)), len(joined))
+        before = joined[same].columns if same < len(joined) else {}
+        joined[same : same + 1] = [Grid(grid.time, {**before, **grid.columns})]
+    return joined
 
 
 def seconds_of(time: Array, label: Label) -> Array:
@@ -312,10 +312,10 @@ def clock(stamps: Array, repeated: NDArray[np.bool_] | None = None, angle: Array
         if count := int(again.sum()):
             rows = rows[~again]
             remarks.append(f"{_rows(count, 'repeats', 'repeat')} the row before and {_are(count)} left out")
-    found = _regular(stamps[rows], step, None if angle is None else angle[rows]) or _as_they_are(stamps[rows])
-    began = float(found.time[0]) if found.time[0] > MAX_BEGIN else 0.0
+    kept = _regular(stamps[rows], step, None if angle is None else angle[rows]) or _as_they_are(stamps[rows])
+    began = float(kept.time[0]) if kept.time[0] > MAX_BEGIN else 0.0
     remarks += ["its time is counted from its first row"] if began else []
-    return Clock(found.time - began, rows[found.rows], (*remarks, *found.remarks), began)
+    return Clock(kept.time - began, rows[kept.rows], (*remarks, *kept.remarks), began)
 
 
 def _longest_stretch(stamps: Array) -> tuple[Rows, list[str]]:

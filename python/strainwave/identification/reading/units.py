@@ -61,18 +61,18 @@ def units_of(columns: Sequence[Column]) -> dict[int, Assumed]:
     Raises:
         QuestionError: a time may be in any unit
     """
-    found = {column.position: _by_itself(column, columns) for column in columns}
+    units = {column.position: _by_itself(column, columns) for column in columns}
     time = next((column for column in columns if column.channel.quantity == "time"), None)
     for pair in pairs_of_shafts(columns) if time is not None else ():
-        known = [found[each.position].unit if found[each.position].why else None for each in pair]
-        if time is None or None not in known:
+        of_pair = [units[each.position].unit if units[each.position].why else None for each in pair]
+        if time is None or None not in of_pair:
             continue
-        slope = abs(speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, found[time.position].unit, "s")))
-        for column, other, own, unit in zip(pair, pair[::-1], known, next(iter(_fitting(slope, *known)), ()), strict=False):
-            is_usual = column is pair[0] and known[1] is None and unit == UNITS["angle"]
+        slope = abs(speed_per_slope(pair[0].raw, pair[1].raw, convert(time.raw, units[time.position].unit, "s")))
+        for column, other, own, unit in zip(pair, pair[::-1], of_pair, next(iter(_fitting(slope, *of_pair)), ()), strict=False):
+            is_usual = column is pair[0] and of_pair[1] is None and unit == UNITS["angle"]
             if own is None:
-                found[column.position] = Assumed(unit, "as is usual" if is_usual else f"as it fits {other.name}")
-    return found
+                units[column.position] = Assumed(unit, "as is usual" if is_usual else f"as it fits {other.name}")
+    return units
 
 
 def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
@@ -82,14 +82,14 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
         columns: with the units that were assumed of those that state none, and their values
     """
     angles = [c for c in columns if not c.sure and c.channel.quantity == "angle" and not c.channel.commanded]
-    known = {speed.position for angle, speed in pairs_of_shafts(columns) if angle.sure}
-    speeds = [c for c in columns if not c.sure and c.channel.quantity == "speed" and c.position not in known]
+    with_sure_angle = {speed.position for angle, speed in pairs_of_shafts(columns) if angle.sure}
+    speeds = [c for c in columns if not c.sure and c.channel.quantity == "speed" and c.position not in with_sure_angle]
     if not angles:
         units = [unit for unit in SPEED_UNITS if speeds and unit != speeds[0].unit]
         return [{speed.position: unit for speed in speeds} for unit in units]
     if any(angle in angles and speed.sure for angle, speed in pairs_of_shafts(columns)):
         return []
-    found, of_units = [], {unit: convert(1.0, unit, "rad/s") for unit in (*SPEED_UNITS, "rev/s")}
+    ways, of_units = [], {unit: convert(1.0, unit, "rad/s") for unit in (*SPEED_UNITS, "rev/s")}
     for unit in ANGLE_UNITS:
         factor = convert(1.0, unit, "rad") / convert(1.0, str(angles[0].unit), "rad")
         sizes = [factor * convert(1.0, str(speed.unit), "rad/s") for speed in speeds]
@@ -99,8 +99,8 @@ def other_units(columns: Sequence[Column]) -> list[dict[int, str]]:
         if unit == angles[0].unit or None in units_of_speeds or not all(_may_move(angle, factor) for angle in angles):
             continue
         paired = {speed.position: str(each) for speed, each in zip(speeds, units_of_speeds, strict=True)}
-        found.append({**{angle.position: unit for angle in angles}, **paired})
-    return found
+        ways.append({**{angle.position: unit for angle in angles}, **paired})
+    return ways
 
 
 def bits_of(counts: float, max_off: float) -> int | None:
@@ -227,18 +227,18 @@ MAX_OFF_COUNTS = 3e-3  # relative difference of the counts of a revolution from 
 def with_counts(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
     """Return the columns, with the counts of a revolution if the speed of an encoder determines them; and remarks."""
     time = next((convert(c.raw, c.unit, "s") for c in columns if c.channel.quantity == "time" and c.unit is not None), None)
-    known, remarks = list(columns), list[str]()
+    counted, remarks = list(columns), list[str]()
     for angle, speed in pairs_of_shafts(columns):
-        is_counted = angle in known and counts(_incomplete_unit(angle))
+        is_counted = angle in counted and counts(_incomplete_unit(angle))
         if time is not None and is_counted and speed.unit is not None and measures(speed.unit, "rad/s"):
             turns = convert(abs(speed_per_slope(angle.raw, speed.raw, time)), speed.unit, "rev/s")
             per_turn = 1.0 / turns if turns > 0.0 else 0.0
             bits, hundreds = bits_of(per_turn, MAX_OFF_COUNTS), 100 * round(per_turn / 100.0)
             is_hundreds = hundreds and abs(per_turn / hundreds - 1.0) < MAX_OFF_COUNTS
             if number := int(2**bits) if bits else hundreds if is_hundreds else 0:
-                known[known.index(angle)] = replace(angle, unit=f"counts/{number}")
+                counted[counted.index(angle)] = replace(angle, unit=f"counts/{number}")
                 remarks.append(f"a revolution has {number} counts of {angle.name}, as its speed shows")
-    return known, remarks
+    return counted, remarks
 
 
 def check_units(columns: Sequence[Column], ratio: float | None) -> None:
@@ -261,8 +261,8 @@ def check_units(columns: Sequence[Column], ratio: float | None) -> None:
     whys = list[str]()
     for column in counted:
         name = column.label.name
-        if needs[name] == COUNTS_EXAMPLE and (found := _counts_by_joint(column, columns, ratio)) is not None:
-            needs[name], why = f"counts/{found[0]}", found[1]
+        if needs[name] == COUNTS_EXAMPLE and (by_joint := _counts_by_joint(column, columns, ratio)) is not None:
+            needs[name], why = f"counts/{by_joint[0]}", by_joint[1]
             whys.append(why)
             del numbers[name]
     lacks = [f"how many counts a revolution has in {listed(column.name for column in counted)}"] if counted else []
@@ -347,23 +347,23 @@ def with_registers(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
     Registers are whole numbers without a unit. The speed must be the slope of the angle by what their counts are.
     """
     if any(LIBFRANKA_TORQUE.fullmatch(column.label.name) for column in columns):
-        found = [replace(each, unit=each.unit or LIBFRANKA_UNITS.get(each.channel.quantity)) for each in columns]
-        return found, ["columns of libfranka are in rad, rad/s and N·m"]
+        in_units = [replace(each, unit=each.unit or LIBFRANKA_UNITS.get(each.channel.quantity)) for each in columns]
+        return in_units, ["columns of libfranka are in rad, rad/s and N·m"]
     time = next((convert(c.raw, c.unit or "s", "s") for c in columns if c.channel.quantity == "time"), None)
-    for known in KNOWN_RECORDERS:
-        own = {column.label.name.casefold(): column for column in columns if column.label.name.casefold() in known.counts}
-        if time is None or not {known.angle, known.speed} <= own.keys() or not all(map(_is_raw, own.values())):
+    for registers in KNOWN_RECORDERS:
+        own = {column.label.name.casefold(): column for column in columns if column.label.name.casefold() in registers.counts}
+        if time is None or not {registers.angle, registers.speed} <= own.keys() or not all(map(_is_raw, own.values())):
             continue
-        counts_of = {name: known.counts[name] for name in own}
+        counts_of = {name: registers.counts[name] for name in own}
         scaled = {name: replace(own[name], raw=size * own[name].raw, unit=unit) for name, (size, unit) in counts_of.items()}
-        angle, speed = scaled[known.angle], scaled[known.speed]
+        angle, speed = scaled[registers.angle], scaled[registers.speed]
         expected = convert(1.0, f"{angle.unit}/s", str(speed.unit))
         if abs(abs(speed_per_slope(angle.raw, speed.raw, time)) / expected - 1.0) > MAX_OFF_SPEED:
             continue
-        sizes = listed(f"{own[name].name} in {known.counts[name][0]:.4g} {known.counts[name][1]}" for name in scaled)
-        name, unit = known.other
+        sizes = listed(f"{own[name].name} in {registers.counts[name][0]:.4g} {registers.counts[name][1]}" for name in scaled)
+        name, unit = registers.other
         other = f"; other models count {unit}: {as_option('unit', own[name].name, unit)}" if name in own else ""
-        remark = f"raw registers of {known.recorder}, whose speed is the slope of the angle: {sizes}{other}"
+        remark = f"raw registers of {registers.recorder}, whose speed is the slope of the angle: {sizes}{other}"
         places = {each.position: each for each in scaled.values()}
         return [places.get(column.position, column) for column in columns], [remark]
     return list(columns), []

@@ -72,8 +72,8 @@ class MatrixLayout:
         motions = [[place for place, name in enumerate(self.names) if name.partition("_")[0] == each] for each in ("q", "dq")]
         angles, speeds = (f"{_columns(places)} {'is' if len(places) == 1 else 'are'}" for places in motions)
         blocks = listed(f"{name} = {_columns(places)}" for name, places in self.efforts.items())
-        found = f"its columns have no names, but a layout: {time}{angles} the angle of joints, {speeds} the speed"
-        return QuestionError(f"{found}; which is the torque or current, of {blocks}", ways)
+        layout = f"its columns have no names, but a layout: {time}{angles} the angle of joints, {speeds} the speed"
+        return QuestionError(f"{layout}; which is the torque or current, of {blocks}", ways)
 
 
 def _columns(places: Sequence[int]) -> str:
@@ -96,7 +96,7 @@ def layout_of(table: OpenTable) -> MatrixLayout | None:
     >>> layout.names
     ('time', 'q_1', 'q_2', 'dq_1', 'dq_2', 'block3_1', 'block3_2')
     """
-    quantities = [found.quantity if (found := meaning(label)) else None for label in table.labels]
+    quantities = [channel.quantity if (channel := meaning(label)) else None for label in table.labels]
     if set(quantities) - {"time", None}:
         return None
     return _by_numbers(table, quantities.index("time") if "time" in quantities else None)
@@ -122,9 +122,9 @@ def _by_numbers(table: OpenTable, timed: int | None) -> MatrixLayout | None:
     spread = {place: float(np.nanstd(values)) for place, values in columns.items() if place != time}
     moving = {place: columns[place] for place in spread if spread[place] > MIN_SPREAD * max(spread.values())}
     pairs = _speeds(moving, instants)
-    found = _blocks(pairs, [place for place in places if place != time], len(table.labels), time)
-    efforts = {} if found is None else {name: each for name, each in found.efforts.items() if set(each) & moving.keys()}
-    return found and replace(found, efforts=efforts)
+    layout = _blocks(pairs, [place for place in places if place != time], len(table.labels), time)
+    efforts = {} if layout is None else {name: each for name, each in layout.efforts.items() if set(each) & moving.keys()}
+    return layout and replace(layout, efforts=efforts)
 
 
 def interleaved(values: Array) -> int:
@@ -191,14 +191,14 @@ def rises_evenly(values: Array) -> bool:
 
 def _speeds(columns: Mapping[int, Array], time: Array) -> list[tuple[int, int]]:
     """Return angles and the speeds that are their slopes, the angles that move most first."""
-    found = dict[int, int]()
+    speed_of = dict[int, int]()
     for parts in PARTS_OF_RECORD:
-        for angle in columns.keys() - found.keys():
+        for angle in columns.keys() - speed_of.keys():
             others = [place for place in columns if place != angle]
             alike = {place: correlation(columns[angle], columns[place], time, parts) for place in others}
             if alike and alike[best := max(alike, key=lambda place: alike[place])] > MIN_CORRELATION:
-                found[angle] = best
-    return sorted(found.items(), key=lambda pair: -float(np.nanmax(columns[pair[0]]) - np.nanmin(columns[pair[0]])))
+                speed_of[angle] = best
+    return sorted(speed_of.items(), key=lambda pair: -float(np.nanmax(columns[pair[0]]) - np.nanmin(columns[pair[0]])))
 
 
 # ---- Questions -------------------------------------------------------------------------------------------------------
@@ -255,9 +255,9 @@ def answers(table: OpenTable, known: Sequence[Column], kind: str | None) -> list
     if has_effort or not names:
         return []
     if len(names) == 1:
-        given, numbers = CONSTANT_SPEED
+        statement, numbers = CONSTANT_SPEED
         ways = [_named({channel: names[0]}) for channel in EFFORTS_IN_WORDS]
-        return [Answer(f"{way.label}, at one speed", {**way.given, **given}, numbers) for way in ways]
+        return [Answer(f"{way.label}, at one speed", {**way.given, **statement}, numbers) for way in ways]
     pairs = [_named(dict(zip(channels, names[:2], strict=True))) for channels in PAIRS_OF_CHANNELS]
     if "time" in quantities:
         return pairs

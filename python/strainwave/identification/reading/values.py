@@ -56,10 +56,10 @@ def values_of(table: OpenTable, columns: Sequence[Column], mapping: FileMapping)
     numbers, left_out = table.measured(sources)
     read = [replace(each, raw=numbers[str(each.position)]) for each in columns]
     read, run_over = _with_time_that_runs_on(read)
-    known, remarks = _with_units(table, read, mapping)
-    known, of_recorder = with_registers(known)
-    known, counted = with_counts(known)
-    own = [_with_side(column, mapping) for column in known if column.own]
+    with_unit, remarks = _with_units(table, read, mapping)
+    with_unit, of_recorder = with_registers(with_unit)
+    with_unit, counted = with_counts(with_unit)
+    own = [_with_side(column, mapping) for column in with_unit if column.own]
     check_units(own, mapping.constants.get("ratio"))
     try:
         units = units_of(own)
@@ -77,7 +77,7 @@ def values_of(table: OpenTable, columns: Sequence[Column], mapping: FileMapping)
     angle = next((c for c in own if c.channel.quantity == "angle" and not c.channel.commanded), None)
     neighbour = Assumed(UNITS["angle"] if angle is None else units[angle.position].unit, sure=True)  # in that of the joint
     converted = [
-        _in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in known
+        _in_si(table, c, units[c.position] if c.own else neighbour._replace(unit=c.unit or neighbour.unit)) for c in with_unit
     ]
     empty = [column for column in converted if not column.by_user and not np.isfinite(column.si).any()]
     if empty and len(empty) < len(converted):
@@ -102,13 +102,13 @@ def misspelt_units(table: OpenTable, mapping: FileMapping) -> QuestionError | No
 
 def _with_time_that_runs_on(columns: Sequence[Column]) -> tuple[list[Column], list[str]]:
     """Return the columns, with the time of a counter that begins anew as it runs on; and a remark."""
-    found, remarks = list(columns), []
+    running, remarks = list(columns), []
     for place, column in enumerate(columns):
         if column.channel.quantity == "time":
             stamps, period = run_on(column.raw)
-            found[place] = replace(column, raw=stamps)
+            running[place] = replace(column, raw=stamps)
             remarks += [f"{column.name} begins anew after {period:g}: it is taken to run on"] if period else []
-    return found, remarks
+    return running, remarks
 
 
 def _with_side(column: Column, mapping: FileMapping) -> Column:
@@ -119,7 +119,7 @@ def _with_side(column: Column, mapping: FileMapping) -> Column:
 
 def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMapping) -> tuple[list[Column], list[str]]:
     """Return the columns with the units that a person gave for a channel, a quantity or a name in the file; and remarks."""
-    found, remarks = list(columns), []
+    with_unit, remarks = list(columns), []
     for name, unit in mapping.units.items():
         channel = CHANNELS.get(CHANNEL_ALIASES.get(name, name))
         places = [
@@ -131,11 +131,11 @@ def _with_units(table: OpenTable, columns: Sequence[Column], mapping: FileMappin
             there = listed(column.name for column in columns)
             raise ValueError(one_line(f"{table.file}: a unit is given for {quoted(name)}, which is not read; read are {there}"))
         for place in places:
-            stated = found[place].unit
+            stated = with_unit[place].unit
             if stated is not None and stated != unit:
-                remarks.append(f"{found[place].name} is stated in {stated}, and taken in {unit}, as --unit has it")
-            found[place] = replace(found[place], unit=unit)
-    return found, remarks
+                remarks.append(f"{with_unit[place].name} is stated in {stated}, and taken in {unit}, as --unit has it")
+            with_unit[place] = replace(with_unit[place], unit=unit)
+    return with_unit, remarks
 
 
 def _is_called(column: Column, channel: Channel | None) -> bool:
@@ -146,17 +146,17 @@ def _is_called(column: Column, channel: Channel | None) -> bool:
 
 def _in_si(table: OpenTable, column: Column, unit: Assumed) -> Column:
     """Return a column with its unit and its values in SI units."""
-    found, there = replace(column, unit=unit.unit, sure=unit.sure), ~np.isnan(column.raw)
+    in_unit, there = replace(column, unit=unit.unit, sure=unit.sure), ~np.isnan(column.raw)
     values = np.full(len(column.raw), np.nan)
     try:
-        values[there] = unit.scale * convert(column.raw[there], unit.unit, found.si_unit)
+        values[there] = unit.scale * convert(column.raw[there], unit.unit, in_unit.si_unit)
     except ValueError as error:
         what = "command" if column.channel.commanded else column.channel.quantity
         usual = "counts/16384" if counts(unit.unit) else column.channel.unit
         numbers = {column.label.name: "counts of a revolution"} if counts(unit.unit) else {}
         ways = [Answer(f"it is in {column.channel.unit}", {"units": {column.label.name: usual}}, numbers)]
         raise QuestionError(f"column {quoted(column.name)} cannot be the {what}: {error}", ways) from None
-    return replace(found, si=values)
+    return replace(in_unit, si=values)
 
 
 # ---- Whole rows ------------------------------------------------------------------------------------------------------
@@ -199,14 +199,14 @@ def _resampled(columns: Sequence[Column]) -> tuple[list[Column], str] | None:
         rows &= (time >= own.min()) & (time <= own.max())
     if not rows.any():
         return None
-    found, moved = [], []
+    resampled, moved = [], []
     for column in columns:
         finite = there[column.position]
         if (finite & rows).sum() == rows.sum():
-            found.append(replace(column, si=column.si[rows]))
+            resampled.append(replace(column, si=column.si[rows]))
             continue
         moved.append(column.name)
         order = np.argsort(time[finite], kind="stable")
-        found.append(replace(column, si=np.interp(time[rows], time[finite][order], column.si[finite][order])))
+        resampled.append(replace(column, si=np.interp(time[rows], time[finite][order], column.si[finite][order])))
     remark = f"rows are of several channels: at the {int(rows.sum())} rows of {slowest.name}"
-    return found, f"{remark}, {listed(moved)} is taken by linear interpolation"
+    return resampled, f"{remark}, {listed(moved)} is taken by linear interpolation"

@@ -14,6 +14,7 @@ from strainwave.identification.experiments.motion_log import MIN_INERTIA
 from strainwave.identification.results.file_result import IN_CURRENT, LOAD_INERTIA, MOTOR_INERTIA, FileEstimate, FileResult
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
+from strainwave.typeset import uncertain, unit
 
 Array = NDArray[np.float64]
 
@@ -74,10 +75,12 @@ class CombinedParameter(Presented):
 
 def lines_of(numbers: Sequence[CombinedParameter]) -> Iterator[str]:
     """Yield a line for each parameter, to print."""
-    width = max((len(each.estimate.label) for each in numbers), default=0)
-    for each in numbers:
-        best = each.estimate
-        yield f"  {best.label:{width}}  {best.value:11.5g} ± {best.sigma:<8.2g} {best.unit:12} {each.taken_from}"
+    cells = [
+        (each.estimate.label, uncertain(each.estimate.value, each.estimate.sigma), unit(each.estimate.unit)) for each in numbers
+    ]
+    name, size, of = (max(map(len, column), default=0) for column in zip(*cells, strict=True)) if cells else (0, 0, 0)
+    for (label, words, in_unit), each in zip(cells, numbers, strict=True):
+        yield f"  {label:{name}}  {words:>{size}}  {in_unit:{of}}  {each.taken_from}"
 
 
 def combine(

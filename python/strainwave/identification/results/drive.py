@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, loads, motor
 from strainwave.files.described import own_paths
-from strainwave.files.entries import OPPOSITE, Entry
+from strainwave.files.entries import OPPOSITE_SENSE, Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import MAX_NUMBERS, Covariance, Validation
 from strainwave.identification.candidates.motion_candidate import nuisances_of
@@ -198,8 +198,8 @@ def _with_motor(whole: GearSet, log: FileResult, parameters: Sequence[CombinedPa
     """Return the set with the motor of a log; the source of its constant states if the log counts the other way."""
     with_motor = _with_motor_of(whole, log, parameters)
     path = "motor.torque_constant" if "motor.torque_constant" in with_motor.sources else MOTOR_INERTIA
-    entry, turned = with_motor.sources[path], next((each for each in log.remarks if OPPOSITE in each), "")
-    if not turned or OPPOSITE in entry.source:
+    entry, turned = with_motor.sources[path], next((each for each in log.remarks if OPPOSITE_SENSE in each), "")
+    if not turned or OPPOSITE_SENSE in entry.source:
         return with_motor
     stated = replace(entry, source=f"{entry.source}; in {one_line(log.name)} {turned}")
     return with_motor.replace(sources={**with_motor.sources, path: stated})

@@ -1,4 +1,4 @@
-"""Result of one file: its estimates, its checks, its error on data held out, and what is drawn of it."""
+"""Result of one file: its estimates, its checks, its error on held-out data, and what is drawn of it."""
 
 from __future__ import annotations
 
@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from strainwave import typeset
 from strainwave.equality import ComparedByFields
 from strainwave.identification.kinds import KINDS
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.results.pictures import Picture, pictures_figure
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.questions import QuestionError
-from strainwave.typeset import percent, quantity
+from strainwave.typeset import percent, quantity, uncertain_quantity
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,10 +29,10 @@ IN_CURRENT = "in A"  # law of an estimate without the torque constant
 ASSUMED_BY_RECORDER = "it is the stiffness that the recorder assumed, and was not measured"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
-MAX_UNEXPLAINED = 0.5  # of what varies on data held out: a model that leaves more explains nothing
+MAX_UNEXPLAINED = 0.5  # of the signal on held-out data: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
 MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
-MAX_IN_BAND = 0.01  # of what varies in the pass band
+MAX_IN_BAND = 0.01  # of the signal in the pass band
 
 
 @dataclass(frozen=True)
@@ -61,14 +60,14 @@ class Check(Presented):
     remedy: str = ""
 
     def _headline(self) -> str:
-        return f"{self.name} of {self.source}: {typeset.quantity(self.value, self.unit)}, {self._verdict()}"
+        return f"{self.name} of {self.source}: {quantity(self.value, self.unit)}, {self._verdict()}"
 
     def _verdict(self) -> str:
-        return f"{'FAILED' if self.failed else 'passed'}, limit {typeset.quantity(self.limit, self.unit)}"
+        return f"{'FAILED' if self.failed else 'passed'}, limit {quantity(self.limit, self.unit)}"
 
 
 def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan) -> str:
-    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of what varies.
+    """Return an RMS error in the unit of its signal, beside that of plain least squares, and its share of the signal.
 
     Args:
         error: root mean square of measured less predicted
@@ -77,10 +76,10 @@ def error_in_words(error: float, unit: str, varies: float, plain: float = np.nan
         plain: what plain least squares leaves; not a number without
 
     >>> error_in_words(0.147, "A", 1.79, 0.185), error_in_words(8.3e-3, "N.m", 0.054)
-    ('0.147 A (plain least squares 0.185 A), 8.2 % of what varies', '8.3 mN·m, 15 % of what varies')
+    ('0.147 A (plain least squares 0.185 A), 8.2 % of the signal', '8.3 mN·m, 15 % of the signal')
     """
     beside = f" (plain least squares {quantity(plain, unit)})" if np.isfinite(plain) else ""
-    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of what varies' if varies > 0.0 else ''}"
+    return f"{quantity(error, unit)}{beside}{f', {percent(error / varies)} of the signal' if varies > 0.0 else ''}"
 
 
 @dataclass(frozen=True)
@@ -130,11 +129,11 @@ class HeldOut(Presented):
         return MAX_SHARE_VIBRATING if self.in_band < MAX_IN_BAND else MAX_SHARE_OF_PLAIN
 
     def _headline(self) -> str:
-        plain = f", plain least squares {typeset.quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
-        return f"error on data held out {typeset.quantity(self.error, self.unit)}{plain}"
+        plain = f", plain least squares {quantity(self.plain, self.unit)}" if np.isfinite(self.plain) else ""
+        return f"error on held-out data {quantity(self.error, self.unit)}{plain}"
 
     def _rows(self) -> Iterator[Row]:
-        yield Row("error on data held out", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
+        yield Row("error on held-out data", self.error, self.unit, note=f"of {self.channel}, {self.stretch}")
         if np.isfinite(self.plain):
             yield Row("error of plain least squares", self.plain, self.unit)
         yield Row("error of the mean", self.zero, self.unit)
@@ -222,7 +221,7 @@ class FileEstimate(Presented):
         return "phase" in self.path.rpartition(".")[2]
 
     def _headline(self) -> str:
-        return f"{self.label} = {typeset.uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
+        return f"{self.label} = {uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +242,7 @@ class FileResult(ComparedByFields, Pictured):
         part_of: the table that it is a point of, together with others; empty if it stands by itself
         pictures: measured against modelled
         held_out: error on data that took no part in the fit; None if nothing was held out
-        candidates: name of each model tried and its error on data held out, in the unit of the fit, best first
+        candidates: name of each model tried and its error on held-out data, in the unit of the fit, best first
         fit: the fit of the model, with the covariance of its estimates; None if nothing was fitted
         bend: angle of the input in which bristles of its friction bend at reversals [rad]; 0 if it does not show them
         between: the fit of the gear between both encoders; None without one

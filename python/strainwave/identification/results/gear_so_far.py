@@ -198,6 +198,9 @@ def _first_sigma(part: str, estimates: Sequence[FileEstimate]) -> float:
     return own[0] if own else np.inf
 
 
+# ---- Torque constant and rotor ---------------------------------------------------------------------------------------
+
+
 def torque_constant_of(file: Recognised, gear_set: GearSet) -> tuple[float, float] | None:
     """Return the torque constant [N.m/A] and its relative standard deviation [1]; None if it is not known.
 

@@ -57,6 +57,11 @@ class JudgedFit:
     shared: Mapping[str, str] = field(default_factory=dict)
     prefix: str = "gear."
 
+    def with_set_before(self, known: GearSoFar) -> tuple[Fit, tuple[FileEstimate, ...]]:
+        """Return the fit and its estimates, with the set before the file as the prior of what the file does not determine."""
+        estimates = tuple(self.estimates(known.gear_set.sources, known.determined_by))
+        return with_set_before(self.fit, estimates, known, self.prefix) if self.explained else (self.fit, estimates)
+
     def estimates(self, sources: Mapping[str, Entry], determined: Collection[str]) -> Iterator[FileEstimate]:
         """Yield the estimates of the parameters, without those of the measurement, as zeros of encoders.
 
@@ -91,7 +96,11 @@ class JudgedFit:
             return why or TOO_UNCERTAIN, bool(why)
         if why := self.shared.get(path, ""):
             return why, True
-        return self._by_wrong(place, sources) or _by_kept(estimate, shifts), False
+        if why := self._by_wrong(place, sources):
+            return why, False
+        size = _size(estimate)
+        far = [f"{kept} by {100.0 * shift / size:.2g} %" for kept, shift in shifts.items() if shift > MAX_RELATIVE_SHIFT * size]
+        return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_KEPT_LISTED])}" if far else "", False
 
     def _undetermined(self, place: int) -> str:
         estimate = self.fit.estimates[place]
@@ -124,13 +133,6 @@ def _law(path: str, gear: Any) -> str:
     """Return the law that gives a number its meaning; empty for numbers that mean the same in every law."""
     part, _, name = path.removeprefix("gear.").partition(".")
     return "" if part == "friction_input" and name in STEADY_NUMBERS else str(getattr(gear, part).name)
-
-
-def _by_kept(estimate: Estimate, shifts: Mapping[str, float]) -> str:
-    """Return the kept parameters whose uncertainty shifts an estimate far; empty if none does."""
-    size = _size(estimate)
-    far = [f"{path} by {100.0 * shift / size:.2g} %" for path, shift in shifts.items() if shift > MAX_RELATIVE_SHIFT * size]
-    return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_KEPT_LISTED])}" if far else ""
 
 
 def combination(fit: Fit, place: int) -> str:
@@ -180,7 +182,7 @@ def _is_in(path: str, determined: Collection[str]) -> bool:
 
 
 def with_set_before(
-    found: Fit, estimates: Sequence[FileEstimate], known: GearSoFar, prefix: str = ""
+    found: Fit, estimates: Sequence[FileEstimate], known: GearSoFar, prefix: str
 ) -> tuple[Fit, tuple[FileEstimate, ...]]:
     """Return a fit and its estimates with the set before the file as the prior of what the file does not determine.
 
@@ -260,25 +262,22 @@ def moved(
     estimates: Iterable[FileEstimate], again: Fit, found: Fit, priors: Mapping[str, PriorOfSet], prefix: str = ""
 ) -> tuple[FileEstimate, ...]:
     """Return estimates with the values of a fit with priors, and what is determined only in combination marked so."""
-    places = {plain(prefix + each.path): place for place, each in enumerate(found.estimates)}
-    return tuple(
-        _moved(each, places[each.path], again, found, priors.get(found.estimates[places[each.path]].path))
-        if each.path in places else each
-        for each in estimates
-    )  # fmt: skip
-
-
-def _moved(each: FileEstimate, place: int, again: Fit, found: Fit, prior: PriorOfSet | None) -> FileEstimate:
-    new = again.estimates[place]
-    if prior is None:
-        return replace(each, value=new.value)
-    sums = combination(found, place)
-    is_split = bool(sums) or (not each.why and abs(new.value - each.value) > MAX_SHIFT_SIGMA * each.sigma)
-    return replace(
-        each, value=new.value,
-        sigma=float(np.hypot(1.0 / np.hypot(1.0 / max(each.sigma, 1e-300), 1.0 / prior.sigma), each.common)),
-        why=sums or each.why or (BY_SET if is_split else ""), in_combination=each.in_combination or is_split,
-    )  # fmt: skip
+    places, shifted = {plain(prefix + each.path): place for place, each in enumerate(found.estimates)}, []
+    for each in estimates:
+        if (place := places.get(each.path)) is None:
+            shifted.append(each)
+            continue
+        value, prior = again.estimates[place].value, priors.get(found.estimates[place].path)
+        if prior is None:
+            shifted.append(replace(each, value=value))
+            continue
+        sums = combination(found, place)
+        is_split = bool(sums) or (not each.why and abs(value - each.value) > MAX_SHIFT_SIGMA * each.sigma)
+        own = 1.0 / np.hypot(1.0 / max(each.sigma, 1e-300), 1.0 / prior.sigma)
+        why = sums or each.why or (BY_SET if is_split else "")
+        sigma, in_combination = float(np.hypot(own, each.common)), each.in_combination or is_split
+        shifted.append(replace(each, value=value, sigma=sigma, why=why, in_combination=in_combination))
+    return tuple(shifted)
 
 
 # ---- Sums of friction ------------------------------------------------------------------------------------------------

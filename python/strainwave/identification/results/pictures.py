@@ -222,8 +222,12 @@ def table_points(axes: Axes, curves: Recording) -> None:
     order = np.argsort(curves["speed"], kind="stable")
     speed = curves["speed"][order]
     axes.plot(speed, curves[curves.names[1]][order], "o", color=LIGHT["measured"], label="measured", zorder=3)
-    for side in (speed < 0.0, speed > 0.0):
-        axes.plot(speed[side], curves["modelled"][order[side]], color=LIGHT["model"], label="model" if side[-1] else "")
+    modelled = curves["modelled"][order]
+    if np.any((np.diff(speed) == 0.0) & (np.diff(modelled) != 0.0)):  # of several loads at one speed, which no line shows
+        axes.plot(speed, modelled, "_", color=LIGHT["model"], markersize=11.0, markeredgewidth=1.6, label="model", zorder=4)
+    else:
+        for side in (speed < 0.0, speed > 0.0):
+            axes.plot(speed[side], modelled[side], color=LIGHT["model"], label="model" if side[-1] else "")
     marks.speed_axis(axes, speed)
 
 
@@ -239,9 +243,10 @@ def loop_points(axes: Axes, curves: Recording) -> None:
 def _loop(axes: Axes, picture: Picture) -> None:
     """Draw the angle over the torque."""
     loop_points(axes, picture.curves)
-    torque, angle = sorted(picture.curves.names[:2], key=lambda name: picture.curves.unit(name) != "N.m")
+    torque, angle = sorted(picture.curves.names[:2], key=lambda name: picture.curves.unit(name) == "rad")
     side = picture_label(picture).removeprefix("torque").removeprefix("twist")
-    marks.label_axes(axes, f"{ANGLE_NAMES.get(angle, angle.replace('_', ' '))}{side}", "rad", torque, "N.m")
+    name = ANGLE_NAMES.get(angle, angle.replace("_", " "))
+    marks.label_axes(axes, f"{name}{side}", "rad", torque, picture.curves.unit(torque))
 
 
 def _means(axes: Axes, picture: Picture) -> None:

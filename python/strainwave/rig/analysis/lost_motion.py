@@ -91,7 +91,10 @@ def widest(falling: Branch, rising: Branch, loop: Loop, freedom: float = inf) ->
     if low >= high:
         return None
     knots = np.unique(np.clip(np.concatenate((falling.torque, rising.torque)), low, high))
-    both = [_limit(falling, knots, side) - _limit(rising, knots, side) for side in ("left", "right")]
+    both = [
+        _read(falling.torque, falling.angle, knots, side) - _read(rising.torque, rising.angle, knots, side)
+        for side in ("left", "right")
+    ]
     torque, apart = np.repeat(knots, 2)[1:-1], np.column_stack(both).ravel()[1:-1]  # no limit from beyond the ends
     most = float(apart.max())
     wide = torque[apart >= most - WIDTH_TOLERANCE * abs(most)]
@@ -158,17 +161,14 @@ def closure(cut: Segmented, freedom: float = inf) -> Result | None:
         return None
     cycle = part(cut.loop, cut.cycle, cut.loop.name)
     lacking = float(cycle.torque[0] - cycle.torque[-1])
-    further = _slope_at_end(cycle) * lacking if lacking else 0.0
+    further = 0.0
+    if lacking:
+        away = np.abs(cycle.torque - cycle.torque[-1]) > CLOSING_TOLERANCE * np.ptp(cycle.torque)
+        first = int(np.flatnonzero(away)[-1])
+        further = float((cycle.angle[-1] - cycle.angle[first]) / (cycle.torque[-1] - cycle.torque[first])) * lacking
     value = float(cycle.angle[-1] - cycle.angle[0]) + further
     random = hypot(float(cycle.angle_sigma[-1]), float(cycle.angle_sigma[0]), further)
     return result(value, "rad", random=random, shared=abs(value) * cycle.angle_scale, freedom=freedom)
-
-
-def _slope_at_end(cycle: Loop) -> float:
-    """Return the change of angle per torque over the last points [rad/(N.m)]."""
-    away = np.abs(cycle.torque - cycle.torque[-1]) > CLOSING_TOLERANCE * np.ptp(cycle.torque)
-    first = int(np.flatnonzero(away)[-1])
-    return float((cycle.angle[-1] - cycle.angle[first]) / (cycle.torque[-1] - cycle.torque[first]))
 
 
 def drift(centres: Array, sigma: float) -> Result:
@@ -225,10 +225,6 @@ def _slopes(branch: Branch, torque: float) -> tuple[float, float]:
     slopes = (branch.angle[rows[1:]] - branch.angle[last[:-1]]) / np.diff(knots)
     below, above = (np.clip(np.searchsorted(knots, torque, side) - 1, 0, len(slopes) - 1) for side in ("left", "right"))
     return float(slopes[below]), float(slopes[above])
-
-
-def _limit(branch: Branch, torque: Array, side: str) -> Array:
-    return _read(branch.torque, branch.angle, torque, side)
 
 
 def _read(x: Array, y: Array, at: Array, side: str) -> Array:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,13 +136,11 @@ def segment(loop: Loop) -> Segmented:
     >>> [regime.name for regime in segment(loop).regimes]
     ['positive_unloading', 'negative_loading', 'negative_unloading', 'positive_loading']
     """
-    _check(loop)
-    ends, minor = _ends(loop)
-    runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
+    runs = _checked_runs(loop)
     cycle, falling, rising = _cycle(loop, runs)
     regimes = tuple(regime for name in NAMES if (regime := _regime(name, falling, rising, loop)) is not None)
-    remarks = tuple(remarks_on_steps(loop, [turn for run in runs for turn in run.turns[::2]], regimes, NAMES))
-    return Segmented(loop, falling, rising, regimes, cycle, _count(runs), remarks)
+    remarks = tuple(_remarks_on_steps(loop, [turn for run in runs for turn in run.turns[::2]], regimes))
+    return Segmented(loop, falling, rising, regimes, cycle, len(_pairs(runs)), remarks)
 
 
 def cycles(loop: Loop) -> list[Loop]:
@@ -153,9 +151,7 @@ def cycles(loop: Loop) -> list[Loop]:
     >>> [len(each) for each in cycles(twice)]
     [5, 5]
     """
-    _check(loop)
-    ends, minor = _ends(loop)
-    runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
+    runs = _checked_runs(loop)
     pairs = _pairs(runs)
     if len(pairs) < 2:
         return [loop]
@@ -172,7 +168,8 @@ def part(loop: Loop, rows: slice | Rows, name: str) -> Loop:
 # ---- Where it turns ---------------------------------------------------------------------------------------------------
 
 
-def _check(loop: Loop) -> None:
+def _checked_runs(loop: Loop) -> list[_Run]:
+    """Return the runs from turn to turn, or refuse points that are no loop in the order measured."""
     n = len(loop)
     if n < 3:
         raise ValueError(
@@ -190,15 +187,17 @@ def _check(loop: Loop) -> None:
             "put the points in the order measured"
         )
     ends, minor = _ends(loop)
-    inner = [_Run(loop, first, last, minor) for first, last in pairwise(ends)][1:-1]
-    detours = len(minor) + sum(not run.complete for run in inner)
+    runs = [_Run(loop, first, last, minor) for first, last in pairwise(ends)]
+    detours = len(minor) + sum(not run.complete for run in runs[1:-1])
     if detours > max(MAX_SMALL_LOOP_TURNS, MAX_DETOURS_PER_POINT * n):
         raise ValueError(
             f"{loop.name}: torque and angle turn back {detours} times in {n} points without reaching a peak; "
             "put the points in the order measured, not sorted by torque or angle"
         )
     for name, other in (("angle", loop.torque), ("torque", loop.angle)):
-        if runs_one_way(getattr(loop, name)) and _goes_back(other) > MAX_BACKWARD_SHARE * np.ptp(other):
+        forward = other if other[-1] >= other[0] else -other
+        backward = float(np.max(np.maximum.accumulate(forward) - forward))
+        if runs_one_way(getattr(loop, name)) and backward > MAX_BACKWARD_SHARE * np.ptp(other):
             raise ValueError(
                 f"{loop.name}: its points are sorted by {name}, which mixes the branches; put the points in the order measured"
             )
@@ -207,12 +206,7 @@ def _check(loop: Loop) -> None:
             f"{loop.name}: the torque falls as the angle grows; give both the same sense, as an elastic gear has them: "
             "reverse the sign of one of the two"
         )
-
-
-def _goes_back(values: Array) -> float:
-    """Return the largest backward change of a series between its beginning and its end."""
-    forward = values if values[-1] >= values[0] else -values
-    return float(np.max(np.maximum.accumulate(forward) - forward))
+    return runs
 
 
 def _path(loop: Loop) -> Array:
@@ -256,7 +250,6 @@ class _Run:
 
 
 def _pairs(runs: Sequence[_Run]) -> list[tuple[_Run, _Run]]:
-    """Complete cycles one after the other: a branch and the way back."""
     found: list[tuple[_Run, _Run]] = []
     i = 0
     while i < len(runs) - 1:
@@ -266,10 +259,6 @@ def _pairs(runs: Sequence[_Run]) -> list[tuple[_Run, _Run]]:
         else:
             i += 1
     return found
-
-
-def _count(runs: Sequence[_Run]) -> int:
-    return len(_pairs(runs))
 
 
 def _cycle(loop: Loop, runs: Sequence[_Run]) -> tuple[Rows, Branch | None, Branch | None]:
@@ -303,7 +292,6 @@ def _best(loop: Loop, runs: Sequence[_Run]) -> tuple[Branch | None, Branch | Non
 
 
 def _meet(loop: Loop, late: _Run, early: _Run) -> bool:
-    """True if the end of a loop comes back to the torque of its beginning."""
     torque = loop.torque
     step = float(np.median(np.abs(np.diff(torque))))
     lacking = late.sense * (float(torque[early.first]) - float(torque[late.last]))
@@ -391,33 +379,20 @@ def _crossing(branch: Branch) -> tuple[float, float, float, float]:
     return 0.0, float(share @ angle), angle_sigma, torque_sigma
 
 
-class Quarter(Protocol):
-    """A regime, as far as it is spoken of."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def torque(self) -> NDArray[np.float64]: ...
-    @property
-    def from_zero(self) -> bool: ...
-
-
-def remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Quarter], names: Sequence[str]) -> Iterator[str]:
-    """Points that may be sorted, smaller loops on the way, steps left out, and regimes that are missing or begin late.
-
-    Args:
-        loop: the loop
-        turns: rows where a smaller loop begins
-        regimes: those measured
-        names: of all regimes of a cycle
-    """
+def _remarks_on_steps(loop: Loop, turns: Iterable[int], regimes: Sequence[Regime]) -> Iterator[str]:
+    """Yield remarks on sorted points, smaller loops (from rows `turns`), gaps, and regimes that are missing or begin late."""
     yield from _of_sorted(loop)
-    yield from (_of_turn(loop, turn) for turn in turns)
+    for turn in turns:
+        at = f"the torque turns back at point {turn + 1} ({loop.torque[turn]:.4g} N.m) before the peak"
+        yield f"{at}; what lies on that smaller loop is in no regime"
     yield from _of_gaps(loop)
     found = [regime.name for regime in regimes]
-    if missing := [name.replace("_", " ") for name in names if name not in found]:
+    if missing := [name.replace("_", " ") for name in NAMES if name not in found]:
         yield f"not measured from zero torque to the peak: {', '.join(missing)}"
-    yield from (_of_late(regime) for regime in regimes if not regime.from_zero)
+    for regime in regimes:
+        if not regime.from_zero:
+            least = float(np.abs(regime.torque).min())
+            yield f"{regime.name.replace('_', ' ')} is measured from {least:.3g} N.m on: it has no secant from zero torque"
 
 
 def runs_one_way(values: NDArray[np.float64]) -> bool:
@@ -437,15 +412,7 @@ def _of_sorted(loop: Loop) -> Iterator[str]:
             )
 
 
-def _of_turn(loop: Loop, turn: int) -> str:
-    return (
-        f"the torque turns back at point {turn + 1} ({loop.torque[turn]:.4g} N.m) before the peak; what lies on that smaller "
-        "loop is in no regime"
-    )
-
-
 def _of_gaps(loop: Loop) -> Iterator[str]:
-    """Steps of torque that are a multiple of the usual one."""
     steps = np.abs(np.diff(loop.torque))
     usual = float(np.median(steps))
     alike = np.abs(steps - usual) < 0.05 * usual
@@ -460,8 +427,3 @@ def _of_gaps(loop: Loop) -> Iterator[str]:
         f"the torque changes between points {listed}{more}, and by {usual:.4g} N.m as a rule: steps were left out, or "
         "not recorded. Values between are taken on a straight line"
     )
-
-
-def _of_late(regime: Quarter) -> str:
-    least = float(np.abs(regime.torque).min())
-    return f"{regime.name.replace('_', ' ')} is measured from {least:.3g} N.m on: it has no secant from zero torque"

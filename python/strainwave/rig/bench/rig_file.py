@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
@@ -121,9 +121,26 @@ def _read(content: Mapping[str, Any]) -> Rig:
             given = checked(_table_form(table), head[table])
             members |= {key: given[key] for key in _CHOICES if given.get(key) is not None}
             members |= {key: _value(key, given[key], unit) for key, unit in numbers.items() if given[key] is not None}
-    members["masses"] = tuple(_read_masses(head["masses"]))
+    masses = []
+    for row, table in enumerate(head["masses"], start=1):
+        with at(f"[[masses]] {row}"):
+            given = checked(_masses_form(), table)
+            mass = _value("mass", given["mass"], "kg")
+            masses.append(Masses(mass.value, given["count"], mass.sigma, mass.source))
+    members["masses"] = tuple(masses)
     with at("[camera]"):
-        members["camera"] = _read_camera(checked(_camera_form(), head["camera"]))
+        given = checked(_camera_form(), head["camera"])
+        camera: dict[str, Any] = {"sources": {}}
+        for name in [name for name in CAMERA if given[name] is not None]:
+            entries, keys = given[name] if isinstance(given[name], list) else [given[name]], _keys(name)
+            if len(entries) != len(keys):
+                raise ValueError(f"{name} has {len(entries)} numbers; write {_camera_form().examples[name]}")
+            entry_units = zip(keys, entries, CAMERA[name], strict=True)
+            members_of_camera = {key: _value(key, entry, unit) for key, entry, unit in entry_units}
+            values = tuple(number.value for number in members_of_camera.values())
+            camera[name] = values if len(values) > 1 else values[0]
+            camera["sources"] |= {key: each.source for key, each in members_of_camera.items() if each.source != NOT_GIVEN}
+        members["camera"] = Camera(**camera)
     with at("[loading]"):
         return Rig(**members)
 
@@ -132,34 +149,6 @@ def _value(key: str, entry: Mapping[str, Any], unit: str) -> Value:
     with at(f"{key}:"):
         number = Quantity(**entry).to(unit)
         return Value(number.value, number.uncertainty or 0.0, number.source)
-
-
-def _read_masses(tables: list[dict[str, Any]]) -> Iterator[Masses]:
-    for number, table in enumerate(tables, start=1):
-        with at(f"[[masses]] {number}"):
-            given = checked(_masses_form(), table)
-            mass = _value("mass", given["mass"], "kg")
-            yield Masses(mass.value, given["count"], mass.sigma, mass.source)
-
-
-def _read_camera(given: Mapping[str, Any]) -> Camera:
-    members: dict[str, Any] = {}
-    sources: dict[str, str] = {}
-    for name in CAMERA:
-        if given[name] is not None:
-            numbers = _numbers_of_camera(name, given[name])
-            values = tuple(number.value for number in numbers.values())
-            members[name] = values if len(values) > 1 else values[0]
-            sources |= {key: number.source for key, number in numbers.items() if number.source != NOT_GIVEN}
-    return Camera(**members, sources=sources)
-
-
-def _numbers_of_camera(name: str, given: Any) -> dict[str, Value]:
-    """The numbers of one member of a camera, each by its own name."""
-    entries, keys = given if isinstance(given, list) else [given], _keys(name)
-    if len(entries) != len(keys):
-        raise ValueError(f"{name} has {len(entries)} numbers; write {_camera_form().examples[name]}")
-    return {key: _value(key, entry, unit) for key, entry, unit in zip(keys, entries, CAMERA[name], strict=True)}
 
 
 def _keys(name: str) -> list[str]:
@@ -227,34 +216,27 @@ def _text(rig: Rig) -> str:
         written.add("note", rig.note)
     for table, numbers in NUMBERS.items():
         choices = {key: getattr(rig, key) for key in _CHOICES} if table == "loading" else {}
-        entries = {key: _entry(getattr(rig, key), unit) for key, unit in numbers.items() if _is_stated(rig, key)}
+        entries = {
+            key: _entry(getattr(rig, key), unit)
+            for key, unit in numbers.items()
+            if getattr(rig, key) not in (None, _DEFAULTS[key])
+        }
         if content := choices | entries:
             written.add(table, content)
     if rig.masses:
-        written.add("masses", _written_masses(rig))
+        tables = tomlkit.aot()
+        for masses in rig.masses:
+            row = tomlkit.table()
+            row.update({"mass": _entry(Value(masses.mass, masses.sigma, masses.source), "kg"), "count": masses.count})
+            tables.append(row)
+        written.add("masses", tables)
     if camera := _written_camera(rig.camera):
         written.add("camera", camera)
     return tomlkit.dumps(written)
 
 
-def _is_stated(rig: Rig, key: str) -> bool:
-    """True if a rig states a number, so that it differs from the default of a file that omits it."""
-    return getattr(rig, key) not in (None, _DEFAULTS[key])
-
-
 def _entry(number: Value, unit: str) -> Any:
     return inline(number.value, unit, Entry(number.source, uncertainty=number.sigma or None))
-
-
-def _written_masses(rig: Rig) -> Any:
-    import tomlkit
-
-    tables = tomlkit.aot()
-    for masses in rig.masses:
-        table = tomlkit.table()
-        table.update({"mass": _entry(Value(masses.mass, masses.sigma, masses.source), "kg"), "count": masses.count})
-        tables.append(table)
-    return tables
 
 
 def _written_camera(camera: Camera) -> dict[str, Any]:

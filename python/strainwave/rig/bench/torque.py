@@ -120,7 +120,12 @@ def torque_of(steps: Sequence[Step], rig: Rig, angle: Sequence[float] | Array | 
     cords = np.where(measured, [step.torque or 0.0 for step in steps], difference * rig.gravity.value * radius)
     held = np.where(measured, 0.0, rig.pulley_torque.value + rig.pulley_share.value * np.abs(cords))
     shaft, sense = _play(cords, held)
-    weighed = np.hypot(*(_mass_sigmas(steps, rig, pair) for pair in ("mass_positive", "mass_negative")))
+    weighed = np.hypot(
+        *(
+            np.array([mass_sigma(getattr(step, pair), rig.masses) for step in steps])
+            for pair in ("mass_positive", "mass_negative")
+        )
+    )
     sigma = np.where(measured, 0.0, weighed * rig.gravity.value * radius)
     if np.all(measured):
         return Torque(cords, shaft, sense, sigma, 0.0, 0.0)
@@ -159,11 +164,6 @@ def shared_errors(rig: Rig, angle: Sequence[float] | Array | None, cords: Array)
         share = _rms(cords * np.tan(turned)) / (_rms(cords) or 1.0)
         shares["angle at which the cords are tangent"] = share * rig.cord_tangent.sigma
     return shares
-
-
-def _mass_sigmas(steps: Sequence[Step], rig: Rig, pair: str) -> Array:
-    """Standard deviation of the total on a pair of pans at each step [kg]."""
-    return np.array([mass_sigma(getattr(step, pair), rig.masses) for step in steps])
 
 
 def mass_sigma(total: float, sets: Sequence[Masses]) -> float:

@@ -195,18 +195,15 @@ def read_series(path: str | Path) -> Series:
         raise ValueError(f"{table.file} has no column of numbers; it needs what was varied: {listed(FACTORS)}")
     numbers = Recording.from_csv(path, columns={name: name for name in numeric})
     texts = {name: [cells[names.index(name)] for _, cells in table.texts()] for name in TEXTS if name in names}
-    factors = {name: _values(numbers, name, FACTORS[name].unit) for name in numeric if name in FACTORS}
-    quantities = {name: _values(numbers, name, QUANTITIES[name][1]) for name in numeric if name in QUANTITIES}
-    files = [_named(Path(path), each) for each in texts.get("file", [])]
+    units = {name: FACTORS[name].unit if name in FACTORS else QUANTITIES[name][1] for name in numeric}
+    values = {name: numbers.values(name, unit) if unit else numbers[name] for name, unit in units.items()}
+    factors = {name: column for name, column in values.items() if name in FACTORS}
+    quantities = {name: column for name, column in values.items() if name in QUANTITIES}
+    with at(f"{path}:"):
+        files = [inside(Path(path).parent, each) for each in texts.get("file", [])]
     measured = figures_of([read_loop(each) for each in files]) if files else {}
     quantities = {**{name: np.array(values) for name, values in measured.items()}, **quantities}
     return Series(factors, quantities, texts.get("unit", ()), Path(path).name, (Path(path), *files))
-
-
-def _named(table: Path, name: str) -> Path:
-    """The path of a loop that a table names, which lies in the folder of the table."""
-    with at(f"{table}:"):
-        return inside(table.parent, name)
 
 
 def series_of(loops: Sequence[str]) -> Series:
@@ -247,10 +244,6 @@ def _with_condition(text: str) -> tuple[Path, dict[str, float]]:
         value, unit = number_in(found[2]), FACTORS[found[1]].unit
         condition[found[1]] = convert(value, found[3], unit) if found[3] and unit else value
     return Path(path), condition
-
-
-def _values(numbers: Recording, name: str, unit: str) -> Array:
-    return numbers.values(name, unit) if unit else numbers[name]
 
 
 def figures_of(loops: Sequence[Loop]) -> dict[str, list[float]]:

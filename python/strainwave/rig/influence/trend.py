@@ -119,7 +119,7 @@ def regress(columns: Array, values: Array) -> list[Slope]:
     size = np.linalg.norm(columns, axis=0)
     basis, triangle = np.linalg.qr(columns / np.where(size > 0.0, size, 1.0))
     if np.abs(np.diag(triangle)).min() < 1e-9:
-        return [_untold(n - m)] * m
+        return [Slope(float("nan"), float("inf"), n - m, 1.0)] * m
     solution = np.linalg.solve(triangle, basis.T @ values)
     residual = values - basis @ (basis.T @ values)
     variance = float(residual @ residual) / (n - m)
@@ -165,10 +165,6 @@ def lack_of_fit(columns: Array, values: Array) -> float:
         return float("nan")
     beyond = float(np.sum(means[of] ** 2))
     return float(fdtrc(left, pure, (beyond / left) / (error / pure))) if error > 0.0 else 0.0
-
-
-def _untold(freedom: int) -> Slope:
-    return Slope(float("nan"), float("inf"), freedom, 1.0)
 
 
 def _slope(value: float, sigma: float, freedom: int) -> Slope:

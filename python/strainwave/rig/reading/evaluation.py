@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees, radians
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 
@@ -43,6 +44,8 @@ class Evaluation(Presented, Reported):
         deviations: where the steps depart from their plan, in words; None where no plan is known
     """
 
+    _report_module: ClassVar[str] = "strainwave.rig.report.files"
+
     name: str
     analyses: tuple[LoopAnalysis, ...]
     measured: tuple[Loop, ...]
@@ -66,12 +69,6 @@ class Evaluation(Presented, Reported):
 
     def _headline(self) -> str:
         return f"{self.name}, {counted(len(self.analyses), 'loop')}"
-
-    def _files(self) -> Mapping[str, str | bytes]:
-        from strainwave.report.provenance import Provenance
-        from strainwave.rig.report.files import evaluation_files
-
-        return evaluation_files(self, Provenance())
 
 
 def evaluate(

@@ -21,17 +21,8 @@ from strainwave.rig.reading.evaluation import Evaluation
 from strainwave.rig.report.page import rig_report
 from strainwave.rig.vision.angle import Angles
 
-MARKER_COLUMNS = {
-    "x": "px",
-    "y": "px",
-    "radius": "px",
-    "sigma": "px",
-    "residual": "px",
-    "contrast": "",
-    "blur": "px",
-    "arc": "",
-}
-
+MARKER_COLUMNS = dict.fromkeys(("x", "y", "radius", "sigma", "residual"), "px") | {"contrast": "", "blur": "px", "arc": ""}
+NUMBERS = ("hysteresis", "width_at_zero", "rated_torque", "hysteresis_loss", "lost_motion", "torque_width", "area", "closure")
 MAX_NAME_PART = 40  # characters of a specimen in the name of a file, which has at most 255 bytes
 
 
@@ -42,17 +33,14 @@ def loop_names(loops: Sequence[Loop]) -> list[str]:
     >>> loop_names(turned)
     ['loop-0deg-1', 'loop-60deg', 'loop-0deg-2']
     """
-    plain = [f"loop-{_file_part(loop.unit)}{degrees(loop.position):.6g}deg" for loop in loops]
+    plain = []
+    for loop in loops:
+        kept = "".join(each if each.isalnum() or each in "._" else "-" for each in loop.unit[:MAX_NAME_PART]).strip("-.")
+        plain.append(f"loop-{f'{kept}-' if kept else ''}{degrees(loop.position):.6g}deg")
     names = []
     for place, name in enumerate(plain):
         names.append(f"{name}-{plain[: place + 1].count(name)}" if plain.count(name) > 1 else name)
     return names
-
-
-def _file_part(text: str) -> str:
-    """Return a text as part of a file's name."""
-    kept = "".join(each if each.isalnum() or each in "._" else "-" for each in text[:MAX_NAME_PART])
-    return f"{kept.strip('-.')}-" if kept.strip("-.") else ""
 
 
 def loop_files(loops: Sequence[Loop]) -> dict[str, bytes]:
@@ -135,16 +123,6 @@ def results(found: Evaluation, date: str = "") -> dict[str, Any]:
 
 def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, Any]:
     loop = analysis.loop
-    numbers = (
-        "hysteresis",
-        "width_at_zero",
-        "rated_torque",
-        "hysteresis_loss",
-        "lost_motion",
-        "torque_width",
-        "area",
-        "closure",
-    )
     return {
         "label": label,
         "files": [f"{name}.csv", f"{name}.parquet"],
@@ -164,7 +142,7 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
             }
             for each in analysis.stiffnesses
         },
-        **{key: getattr(analysis, key) for key in numbers},
+        **{key: getattr(analysis, key) for key in NUMBERS},
         "drift": analysis.drift,
         "soft_spots": analysis.soft_spots,
         "catalogue": analysis.catalogue,
@@ -173,9 +151,9 @@ def _loop_results(name: str, label: str, analysis: LoopAnalysis) -> dict[str, An
     }
 
 
-def evaluation_files(found: Evaluation, provenance: Provenance) -> dict[str, str | bytes]:
+def files_of(found: Evaluation, provenance: Provenance | None = None) -> dict[str, str | bytes]:
     """Return loops and angles of a test of torsion as tables, the numbers as JSON, and the page, by file name."""
     files: dict[str, str | bytes] = {**loop_files(found.measured), **angle_files(found.angles)}
-    files["results.json"] = results_json(results(found, provenance.date))
+    files["results.json"] = results_json(results(found, provenance.date if provenance else ""))
     files["report.html"] = rig_report(found, provenance, list(files))
     return files

@@ -64,14 +64,14 @@ class Terminal:
     Attributes:
         console: where to
         steps: how many steps the test has
-        change: returns which masses to add and remove for a step, given the one before it
+        tasks: which masses to add and remove for a step, by its number
         torque: on the shaft in a step [N.m]
         read: waits for an answer
     """
 
     console: Console
     steps: int
-    change: Callable[[Step, Step | None], str]
+    tasks: Mapping[int, str]
     torque: Callable[[Step], float]
     read: Callable[[], str] = lambda: input()
     before: dict[int, Look] = field(default_factory=dict)
@@ -83,7 +83,7 @@ class Terminal:
             self._tell(f"\nUnit {step.unit}, f{at}" if step.unit else f"\nF{at}", "bold")
             if before is None:
                 self._tell(HELP, "dim")
-        self._tell(f"\nStep {step.number} of {self.steps}: {self.change(step, before)}", "bold cyan")
+        self._tell(f"\nStep {step.number} of {self.steps}: {self.tasks[step.number]}", "bold cyan")
         return self._read("Enter when it hangs still > ")
 
     def hint(self, words: str) -> str:

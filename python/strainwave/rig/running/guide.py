@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.budget import RefusedFile, read_regular
-from strainwave.files.writing import DRAFT
+from strainwave.files.writing import DRAFT_PREFIX
 from strainwave.messages import one_line
 from strainwave.rig.bench.steps import FILE, Step, append_step, read_steps
 from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES
@@ -228,7 +228,7 @@ def conduct(
     for planned in plan[len(steps) :]:
         load(planned.number)
         answered = _answer(talk, talk.ask(planned, steps[-1] if steps else None))
-        with TemporaryDirectory(prefix=DRAFT, dir=folder) as drafts:
+        with TemporaryDirectory(prefix=DRAFT_PREFIX, dir=folder) as drafts:
             rest, answered = _at_rest(planned, Path(drafts), source, look, talk, settling, answered)
             if answered.stop or rest.picture is None:
                 return steps

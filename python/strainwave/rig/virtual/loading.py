@@ -96,28 +96,18 @@ def load_by_steps(
         raise ValueError("steps: a test needs one step or more")
     states = _through(gear, rig, steps, virgin)
     angle = np.array([state.disk - states[0].disk for state in states])
+    gaps = [wait if a.time is None or b.time is None else b.time - a.time for a, b in pairwise(steps)]
+    seen = angle.copy()  # as a first-order delay shows it, which is at rest where the first step is
+    for k in range(1, len(angle)) if settling > 0.0 else ():
+        seen[k] = angle[k] + (seen[k - 1] - angle[k]) * np.exp(-gaps[k - 1] / settling)
     return Loading(
         angle,
-        _seen(angle, _waits(steps, wait), settling),
+        seen,
         np.array([state.applied for state in states]),
         np.array([state.torque for state in states]),
         np.array([state.elastic for state in states]),
         np.array([state.twist for state in states]),
     )
-
-
-def _waits(steps: Sequence[Step], wait: float) -> Array:
-    times = [step.time for step in steps]
-    gaps = [wait if a is None or b is None else b - a for a, b in pairwise(times)]
-    return np.array([wait, *gaps])
-
-
-def _seen(angle: Array, waits: Array, settling: float) -> Array:
-    """Angles as a first-order delay shows them, which is at rest where the first step is."""
-    seen = angle.copy()
-    for k in range(1, len(angle)) if settling > 0.0 else ():
-        seen[k] = angle[k] + (seen[k - 1] - angle[k]) * np.exp(-waits[k] / settling)
-    return seen
 
 
 @dataclass(frozen=True)

@@ -332,6 +332,7 @@ def rehearsal(rig: Rig, steps: Sequence[Step], gear: Gear | Callable[[Step], Gea
         seed: of the noise; another one each time if None
 
     >>> from strainwave.rig import Step, load
+    >>> from strainwave.rig.virtual.printed import gear_named
     >>> source = rehearsal(load("couple-rig"), [Step(1, 0.35), Step(2, 0.3)], gear_named("torsional-stiffness-article"))
     >>> source.angles.round(4).tolist()
     [0.0, -0.0109]

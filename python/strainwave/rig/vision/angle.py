@@ -21,10 +21,7 @@ from strainwave.rig.vision.image import VIDEOS, Image, by_number, picture_files,
 from strainwave.rig.vision.marker import Frame, Marker, look
 from strainwave.statistics.linear_fit import solved
 
-__all__ = ["Angles", "Frame", "Marker", "camera_seen", "follow", "look", "measure_angles", "turn"]
-
 Source = str | Path | Image
-Point = tuple[float, float]
 Array = NDArray[np.float64]
 _MAX_RELATIVE_DIFFERENCE = 0.05  # of radii or distances by errors of measurement or a tilted view [1]
 _HALF_TURN_MARGIN = 15.0  # degrees before the turn at which its direction is ambiguous
@@ -79,27 +76,6 @@ def measure_angles(
             turn_of(source.name if isinstance(source, Image) else Path(source).name)
             frames.append(look(source, camera=camera, radius=radius, dark=dark))
     return follow(frames, camera=camera, reference=reference)
-
-
-def turn(before: tuple[Point, Point], after: tuple[Point, Point]) -> float:
-    """Return the turn of two markers, counter-clockwise in the picture, within half a turn [rad].
-
-    It is the angle between the vectors from the first marker to the second, by atan2 of their cross and dot products; the
-    difference of two arctangents of slopes wraps (erratum T1).
-
-    Args:
-        before, after: x and y of both markers in the picture, y pointing down
-
-    Raises:
-        ValueError: both markers at the same place
-
-    >>> round(float(np.degrees(turn(((0, 0), (1, 0)), ((0, 0), (0, -1))))), 12)
-    90.0
-    """
-    (ax, ay), (bx, by) = ((pair[1][0] - pair[0][0], pair[0][1] - pair[1][1]) for pair in (before, after))
-    if (ax == 0.0 and ay == 0.0) or (bx == 0.0 and by == 0.0):
-        raise ValueError("both markers are at the same place; their direction is not defined")
-    return float(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def _sources(images: Source | Iterable[Source]) -> Iterator[Source]:
@@ -179,10 +155,13 @@ def follow(
     frames = _out_of_order(_of_one_target(list(frames), camera))
     useful = [i for i, frame in enumerate(frames) if frame.markers is not None]
     if not useful:
-        raise ValueError(_no_angle(frames))
+        reason = f"none of {len(frames)} images gives an angle; {quoted(frames[0].name)}: {frames[0].fault}" if frames else ""
+        raise ValueError(reason or "there is no image")
     zero = _chosen(frames, useful, reference)
     sights = [_Sight.of(frames[i], camera) for i in useful]
-    apart = _by_radius(sights)
+    apart = (
+        min(abs(sight.difference) for sight in sights) > _MAX_RELATIVE_DIFFERENCE
+    )  # the radii distinguish them in every image
     angle = np.zeros(len(useful))
     for k, i in enumerate(useful):
         swapped, step = _step(sights[k - 1] if k else None, sights[k], apart)
@@ -261,11 +240,6 @@ def _step(before: _Sight | None, now: _Sight, apart: bool) -> tuple[bool, float]
     return swapped, float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
 
 
-def _by_radius(sights: Sequence[_Sight]) -> bool:
-    """True if the radii distinguish the markers in every image."""
-    return min(abs(sight.difference) for sight in sights) > _MAX_RELATIVE_DIFFERENCE
-
-
 def _uncertain(step: float, apart: bool, before: str) -> tuple[str, ...]:
     limit, why = (180.0, "the direction") if apart else (90.0, "which of two like markers is which")
     degrees = abs(np.degrees(step))
@@ -282,8 +256,9 @@ def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:
     sights = {i: _Sight.of(frame, camera) for i, frame in enumerate(frames) if frame.markers is not None}
     if len(sights) < 3:
         return frames
-    for what, size_of in (("apart", lambda sight: sight.distance), ("in radius", lambda sight: _mean_radius(sight))):
-        sizes = {i: size_of(sight) for i, sight in sights.items()}
+    distances = {i: sight.distance for i, sight in sights.items()}
+    radii = {i: 0.5 * (sight.markers[0].radius + sight.markers[1].radius) for i, sight in sights.items()}
+    for what, sizes in (("apart", distances), ("in radius", radii)):
         usual = float(np.median(list(sizes.values())))
         for i, size in sizes.items():
             if abs(size / usual - 1.0) > _MAX_RELATIVE_DIFFERENCE and not frames[i].fault:
@@ -307,17 +282,14 @@ def _of_one_size(frames: list[Frame]) -> list[Frame]:
     ]
 
 
-def _mean_radius(sight: _Sight) -> float:
-    return 0.5 * (sight.markers[0].radius + sight.markers[1].radius)
-
-
 def _out_of_order(frames: list[Frame]) -> list[Frame]:
     """Add a warning to images whose name or time contradicts the given order, and to those that are there twice."""
     known: dict[str, str] = {}
     for i, frame in enumerate(frames):
-        warnings = []
-        if i and _numbered_alike(frame.name, frames[i - 1].name) and by_number(frame.name) < by_number(frames[i - 1].name):
-            warnings.append(f"stands after {quoted(frames[i - 1].name)}, before it by its name")
+        warnings, name, before = [], frame.name, frames[i - 1].name if i else ""
+        alike = len({re.sub(r"\d+", "0", each.casefold()) for each in (name, before)}) == 1  # but for their numbers
+        if i and alike and by_number(name) < by_number(before):
+            warnings.append(f"stands after {quoted(before)}, before it by its name")
         earlier = next((each for each in reversed(frames[:i]) if each.taken is not None), None)
         if earlier is not None and frame.taken is not None and earlier.taken is not None and frame.taken < earlier.taken:
             warnings.append(f"stands after {quoted(earlier.name)}, but was taken before it, at {frame.taken}")
@@ -327,11 +299,6 @@ def _out_of_order(frames: list[Frame]) -> list[Frame]:
         if warnings:
             frames[i] = replace(frame, warnings=(*frame.warnings, *warnings))
     return frames
-
-
-def _numbered_alike(one: str, other: str) -> bool:
-    """True if names differ in their numbers alone, so that these determine an order."""
-    return re.sub(r"\d+", "0", one.casefold()) == re.sub(r"\d+", "0", other.casefold())
 
 
 def _unlike(sights: Sequence[_Sight]) -> list[tuple[str, ...]]:
@@ -450,10 +417,3 @@ def _chosen(frames: Sequence[Frame], useful: Sequence[int], reference: str | Non
     if places[0] not in useful:
         raise ValueError(f"reference = {quoted(reference)} gives no angle: {frames[places[0]].fault}")
     return useful.index(places[0])
-
-
-def _no_angle(frames: Sequence[Frame]) -> str:
-    if not frames:
-        return "there is no image"
-    first = frames[0]
-    return f"none of {len(frames)} images gives an angle; {quoted(first.name)}: {first.fault}"

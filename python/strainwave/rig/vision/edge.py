@@ -216,27 +216,18 @@ def edge(grey: Grey, found: Outline) -> Edge | None:
         fit = _fitted(around[np.abs(distance) < width], levels, found)
         if fit is None or step == 0.0:
             return None
-        curve, covariance, residual = fit_points(fit.x, fit.y, fit.arc)
+        x, y, blur, arc = fit
+        curve, covariance, residual = fit_points(x, y, arc)
     except (np.linalg.LinAlgError, ValueError):  # on no curve
         return None
-    shift = np.sqrt(np.pi) * fit.blur * curve.radius / step  # of the centre, by a slope of either plane
+    shift = np.sqrt(np.pi) * blur * curve.radius / step  # of the centre, by a slope of either plane
     covariance = covariance + shift**2 * (levels[0].slopes_covariance + levels[1].slopes_covariance)
     clipped = _clipped(inside, outside, float(grey.max()))
-    return Edge(fit.x, fit.y, curve, covariance, residual, levels[0].middle, levels[1].middle, fit.blur, fit.arc, clipped)
+    return Edge(x, y, curve, covariance, residual, levels[0].middle, levels[1].middle, blur, arc, clipped)
 
 
-@dataclass(frozen=True, eq=False)
-class _Fit:
-    """Points of the edge [px], its blur [px], and the share of the sectors that have one."""
-
-    x: Array
-    y: Array
-    blur: float
-    arc: float
-
-
-def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fit | None:
-    """The edge among the pixels near it; None where too few sectors show one."""
+def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> tuple[Array, Array, float, float] | None:
+    """Return x and y of the edge, its blur [px] and the share of the sectors that have it; None where these are too few."""
     curve, blur = found.curve, found.blur
     sectors = int(np.clip(2.0 * np.pi * curve.radius / SECTOR_LENGTH, _MIN_SECTORS, _MAX_SECTORS))
     low, high = (level.at(band.x, band.y) for level in levels)
@@ -259,7 +250,7 @@ def _fitted(band: _Pixels, levels: tuple[_Level, _Level], found: Outline) -> _Fi
             and abs(blur / blur_before - 1.0) < _MAX_LAST_WIDENING
         ):
             break
-    return _Fit(x[good], y[good], blur, float(np.mean(good)))
+    return x[good], y[good], blur, float(np.mean(good))
 
 
 def _around(grey: Grey, curve: Ellipse, reach: float) -> tuple[_Pixels, Array]:

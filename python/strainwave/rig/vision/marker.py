@@ -393,7 +393,8 @@ def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Mar
     groups = [[each for each in found if each.dark == dark] for dark in (True, False)]
     groups.sort(key=len, reverse=True)
     most, fewer = groups
-    if len(most) == 2 and all(_holds(each, most) for each in fewer):
+    rings = [math.hypot(disc.x - each.x, disc.y - each.y) + each.radius < disc.radius for disc in fewer for each in most]
+    if len(most) == 2 and all(rings):  # discs that contain both markers
         return (most[0], most[1]), ""
     if len(found) == 1:
         alike = [
@@ -406,11 +407,6 @@ def _pair(found: Sequence[Marker], partial: Sequence[Marker]) -> tuple[tuple[Mar
     shown = ", ".join(f"{'dark' if each.dark else 'bright'} {_place(each)}" for each in found[:_MAX_MARKERS_SHOWN])
     more = f", and {len(found) - _MAX_MARKERS_SHOWN} more" if len(found) > _MAX_MARKERS_SHOWN else ""
     return None, f"{len(found)} markers instead of two: {shown}{more}; select them by radius=(least, most) in px, or by dark"
-
-
-def _holds(disc: Marker, markers: Sequence[Marker]) -> bool:
-    """True if a disc contains all markers."""
-    return all(math.hypot(disc.x - each.x, disc.y - each.y) + each.radius < disc.radius for each in markers)
 
 
 def _nothing(grey: Grey, partial: Sequence[Marker]) -> str:

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.candidates.friction import cost_of, fit_friction, innermost
+from strainwave.identification.candidates.friction import cost_of, fit_friction, innermost, plain_error
 from strainwave.identification.experiments.friction_table import FrictionTable
 
 from tests.support.strategies import made
@@ -25,6 +25,23 @@ def test_the_published_table_gives_its_line_whatever_the_law(law: object) -> Non
     found = fit_friction(TABLE_2, sw.Gear(friction_input=law))[0].fit.gear.friction_input
     assert (found.coulomb, found.viscous) == pytest.approx(LINE, rel=1e-9)
     assert found.steady(TABLE_2.speed) == pytest.approx(LINE[0] + LINE[1] * TABLE_2.speed)
+
+
+def test_plain_least_squares_are_coulomb_and_viscous_friction_on_the_same_parts() -> None:
+    """The published table is best as that law, so that both errors agree; a fall towards low speed is beyond it."""
+    everything = np.ones(len(TABLE_2.speed), bool)
+    assert plain_error(TABLE_2, everything) == pytest.approx(fit_friction(TABLE_2, sw.Gear())[0].error, rel=1e-6)
+    falling = made(sw.friction.Stribeck, coulomb=0.03, breakaway=0.06, stribeck_speed=3.0)
+    speed = np.geomspace(0.1, 100.0, 40)
+    fallen = FrictionTable(speed, falling.steady(speed))
+    assert plain_error(fallen, np.ones(40, bool)) > 100.0 * fit_friction(fallen, sw.Gear())[0].error
+
+
+def test_plain_least_squares_leave_out_the_outliers_and_know_a_zero_error_and_a_loss_under_load() -> None:
+    speed, load = np.tile([-20.0, -5.0, 5.0, 10.0, 20.0, 40.0], 2), np.repeat([0.0, 2.0], 6)
+    torque = np.sign(speed) * (0.05 + 0.1 * load) + 1e-3 * speed + 0.02
+    trusted = np.arange(12) != 3
+    assert plain_error(FrictionTable(speed, torque + 5.0 * ~trusted, load=load), trusted) < 1e-12
 
 
 def test_the_ratio_of_breakaway_is_kept_where_the_table_is_silent() -> None:

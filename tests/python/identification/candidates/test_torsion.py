@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks
+from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks, plain_error
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 Array = NDArray[np.float64]
@@ -233,3 +233,14 @@ def test_a_loop_from_the_input_tells_the_spring_wherever_its_samples_lie() -> No
         assert found == pytest.approx([k * 2e-4, k * knee + slope * (1.2e-3 - knee)], rel=3e-3)
         (element,) = best.fit.gear.hysteresis.breakaway  # type: ignore[union-attr]
         assert element == pytest.approx(1.2, rel=0.01)
+
+
+def test_plain_least_squares_of_a_loop_are_a_line_with_dry_friction() -> None:
+    """Exact for a spring with friction; for a hardening spring they leave what is not linear."""
+    twist = np.concatenate([np.linspace(-1e-3, 1e-3, 40), np.linspace(0.95e-3, -1e-3, 39)])
+    rubbed = 2.0 + 1e4 * twist + 3.0 * np.sign(np.gradient(twist))
+    parts = [~held_out_blocks(len(twist), fold) for fold in range(4)]
+    assert plain_error(twist, rubbed, parts) < 1e-9
+    cubic = 4e9 * twist**3
+    line = np.polyval(np.polyfit(twist, cubic, 1), twist)
+    assert plain_error(twist, rubbed + cubic, parts) > 0.9 * float(np.sqrt(np.mean((cubic - line) ** 2)))

@@ -143,8 +143,8 @@ def test_white_residuals_pass_without_a_remark() -> None:
 def test_a_small_shape_is_a_remark_with_its_size() -> None:
     (check,), (remark,) = judged(0.05)
     assert has_small_shape(check)
-    assert remark.startswith("what the model leaves has a shape over the turn: RMS ")
-    assert remark.endswith(f"{100.0 * check.value:.2g} % of what varies")
+    assert remark.startswith("the residual has a shape over the turn: RMS ")
+    assert remark.endswith(f"{100.0 * check.value:.2g} % of the signal")
     assert check.value == pytest.approx(0.05, abs=0.005)
 
 
@@ -167,7 +167,7 @@ def test_the_saw_tooth_of_the_torsion_article_stands_in_the_verdict() -> None:
     assert not check.failed
     assert check.value == pytest.approx(0.82, abs=0.05)  # N.m
     page = identify_report(found)
-    assert "all 5 checks passed; what the model leaves has a shape of RMS 0.824 N·m." in page.replace("\N{NO-BREAK SPACE}", " ")
+    assert "all 5 checks passed; the residual has a shape of RMS 0.824 N·m." in page.replace("\N{NO-BREAK SPACE}", " ")
 
 
 @pytest.mark.slow("identification")

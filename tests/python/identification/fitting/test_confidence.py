@@ -17,11 +17,8 @@ from strainwave.identification.fitting.confidence import Minima, bootstrap, mini
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
 FREE = ["friction_input.coulomb", "friction_input.viscous"]
 SPEED = np.linspace(1.0, 60.0, 40)
-LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
-FREE = ["friction_input.coulomb", "friction_input.viscous"]
 LONG_SPEED = np.linspace(1.0, 60.0, 800)
 START = sw.Gear(friction_input=LAW)
-LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
 FREE_OF_DRIVE = ["gear.stiffness.k", "load.inertia"]
 TRUTH = (1.5e4, 0.5)
 

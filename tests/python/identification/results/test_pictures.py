@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import matplotlib.figure
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.results.pictures import amplitude_spectra, curves_of
+from strainwave.identification.results.pictures import Picture, amplitude_spectra, curves_of, draw_measured, table_points
 
 GEAR = sw.load("hfuc-25-100")
 SPEED = np.linspace(2.0, 200.0, 30)
@@ -120,6 +121,26 @@ def test_a_prediction_is_drawn_with_its_error() -> None:
     assert np.sort(np.asarray(whole.lines[0].get_ydata())) == pytest.approx(np.sort(found.curves["torque"]))
     assert whole.get_title(loc="left") == "torque [N·m]"
     assert left.get_xlabel() == "input speed [rad/s]"
+
+
+def test_a_table_under_several_loads_has_a_mark_for_each_and_one_over_the_speed_a_line() -> None:
+    """A line through several torques at one speed would jump between them."""
+    speed = np.array([10.0, 10.0, 20.0, 20.0])
+    loaded, unloaded = np.array([0.1, 0.2, 0.11, 0.21]), np.array([0.1, 0.1, 0.11, 0.11])
+    for modelled, style in ((loaded, "None"), (unloaded, "-")):
+        curves = {"speed": speed, "torque": modelled, "modelled": modelled}
+        axes = matplotlib.figure.Figure().subplots()
+        table_points(axes, sw.Recording(curves, {"speed": "rad/s", "torque": "N.m", "modelled": "N.m"}))
+        (model,) = [line for line in axes.lines if line.get_label() == "model"]
+        assert model.get_linestyle() == style
+
+
+def test_a_twist_is_drawn_over_the_unit_that_its_torque_has() -> None:
+    twist = np.linspace(-1e-3, 1e-3, 50)
+    columns = {"torque": 50.0 * twist / 1e-3, "twist": twist, "modelled": twist}
+    units = {"torque": "A", "twist": "rad", "modelled": "rad"}
+    axes = draw_measured(matplotlib.figure.Figure(), Picture(sw.Recording(columns, units), "loop", "twist, at the output"))
+    assert (axes.get_xlabel(), axes.get_title()) == ("torque [A]", "twist, at the output [mrad]")
 
 
 def noisy_table(seed: int) -> sw.Recording:

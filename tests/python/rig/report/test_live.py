@@ -70,7 +70,7 @@ def test_the_guide_says_what_to_do_and_shows_what_came_of_it() -> None:
     text, answers = StringIO(), iter(["", "t 20", "", ""])
     console = Console(file=text, force_terminal=True, width=80, color_system=None, legacy_windows=False)
     terminal = Terminal(
-        console, 3, lambda step, before: f"lay on {step.number}", lambda step: 0.1 * step.number, lambda: next(answers)
+        console, 3, {number: f"lay on {number}" for number in (1, 2, 3)}, lambda step: 0.1 * step.number, lambda: next(answers)
     )
     turned = Step(3, 0.1, image="3.png", position=np.pi / 3.0, unit="A")
     steps = [Step(1, 0.3, image="1.png"), Step(2, 0.2, image="2.png"), turned]

@@ -12,7 +12,7 @@ from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from PIL import Image as Pillow
 from strainwave.rig.bench.setup import Camera
-from strainwave.rig.vision.angle import Angles, camera_seen, follow, measure_angles, turn
+from strainwave.rig.vision.angle import Angles, camera_seen, follow, measure_angles
 from strainwave.rig.vision.image import Image, as_image
 from strainwave.rig.vision.marker import Frame, Marker, look
 
@@ -48,18 +48,8 @@ def assert_near(angles: Angles, degrees: list[float]) -> None:
 
 def test_a_turn_past_the_vertical_does_not_wrap_as_slopes_do() -> None:
     """Erratum T1: from a reference at 60 degrees, arctangents of slopes make -129.5 degrees of a turn by 50.5."""
-    before, after = (((0.0, 0.0), (np.cos(t), -np.sin(t))) for t in np.radians([60.0, 110.5]))
-    assert np.degrees(turn(before, after)) == pytest.approx(50.5, abs=1e-12)
-    with pytest.raises(ValueError, match="both markers are at the same place"):
-        turn(((1.0, 1.0), (1.0, 1.0)), after)
-
-
-@given(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(0.1, 100.0), st.floats(-1e3, 1e3))
-def test_a_turn_is_the_difference_of_directions(start: float, by: float, length: float, shift: float) -> None:
-    def pair(angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
-        return (shift, -shift), (shift + length * np.cos(angle), -shift - length * np.sin(angle))
-
-    assert turn(pair(start), pair(start + by)) == pytest.approx(by, abs=1e-9 + 1e-12 * abs(shift) / length)
+    frames = [sight(float(np.radians(angle)), f"{angle}.png") for angle in (60.0, 110.5)]
+    assert np.degrees(follow(frames).angle[1]) == pytest.approx(50.5, abs=1e-9)
 
 
 def test_angles_are_positive_against_the_clock_and_from_the_first_image() -> None:

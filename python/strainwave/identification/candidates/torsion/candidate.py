@@ -18,7 +18,7 @@ from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING_SHARE
 from strainwave.equality import ComparedByFields
 from strainwave.identification.candidates.torsion.dissipation import (
-    SLIPS,
+    TRIED_SLIPS,
     Dissipation,
     Dry,
     Elements,
@@ -33,14 +33,14 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.identification.fitting.unknowns import Estimate
 
-SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 Array = NDArray[np.float64]
+FITTED_SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 MAX_SLIP = 0.9  # of half the span: a loop does not separate an element that slips later from a spring
 MIN_SLIP_RATIO = 1.1  # of two slip twists; elements that are closer are one
-MAX_ROUNDS = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
+MAX_ROUNDS_OF_LEAVING_OUT = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
 MAX_MINIMA = 6  # of one kind that are fitted
 MIN_ZERO_DISTANCE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
-DRIFTS = ("torque_drift", "twist_drift")
+DRIFT_NAMES = ("torque_drift", "twist_drift")
 MIN_DRIFT_SIGMA = 3.0  # standard deviations of a drift
 MAX_START_SAMPLES = 500  # for initial values of a law whose torques take long
 MIN_ERROR_SHARE = 1e-3  # of the span of the torque: a smaller decrease of the error does not justify another parameter
@@ -73,7 +73,7 @@ def fit_loop(
         ValueError: too few samples for any candidate
     """
     chosen = np.ones(len(loop.twist), bool) if training is None else training
-    kinds = [(spring, dissipation) for dissipation in asked(loop, gear, friction_measured) for spring in SPRINGS]
+    kinds = [(spring, dissipation) for dissipation in asked(loop, gear, friction_measured) for spring in FITTED_SPRINGS]
     candidates = _fitted(loop, gear, chosen, kinds)
     best = min(candidates, key=lambda c: c.error)
     if drift := drifts(with_drift(best, gear)):
@@ -242,7 +242,7 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
         return found
 
     def is_shown(estimate: Estimate) -> bool:
-        return estimate.path not in DRIFTS or abs(estimate.value) > MIN_DRIFT_SIGMA * estimate.sigma
+        return estimate.path not in DRIFT_NAMES or abs(estimate.value) > MIN_DRIFT_SIGMA * estimate.sigma
 
     begun = resumed(found)
     loops = [replace(begun, torque_drift=0.0), replace(begun, twist_drift=0.0)]
@@ -253,13 +253,13 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
 
 def drifts(found: TorsionCandidate) -> dict[str, Any]:
     """Return the fitted drifts by name."""
-    return {e.path: e.value for e in found.fit.estimates if e.path in DRIFTS}
+    return {e.path: e.value for e in found.fit.estimates if e.path in DRIFT_NAMES}
 
 
 def resumed(found: TorsionCandidate) -> TorsionLoop:
     """Return the loop with the end of a fit as initial values."""
     at = {estimate.path: estimate.value for estimate in found.fit.estimates}
-    starts: dict[str, Any] = {name: at[name] for name in ("torque_zero", *DRIFTS) if name in at}
+    starts: dict[str, Any] = {name: at[name] for name in ("torque_zero", *DRIFT_NAMES) if name in at}
     return replace(found.loop, near_zero=at.get("twist_zero", found.loop.near_zero), **starts)
 
 
@@ -281,9 +281,9 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
     twist are one. One that slips earlier than the loop determines slips at the smallest twist that it determines.
     """
     half, span = half_span(loop), float(np.ptp(loop.torque))
-    least = half * (SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING_SHARE)
+    least = half * (TRIED_SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING_SHARE)
     stiff: set[int] = set()
-    for last in [*(MAX_ROUNDS - 1) * [False], True]:
+    for last in [*(MAX_ROUNDS_OF_LEAVING_OUT - 1) * [False], True]:
         free = spring.free(gear) + dissipation.free(gear, stiff)
         refined = fit(gear, loop, free, training=training)
         ordered = spring.in_order(refined.gear.stiffness)

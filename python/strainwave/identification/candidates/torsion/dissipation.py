@@ -23,8 +23,8 @@ from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit
 
 Array = NDArray[np.float64]
-SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists of slip that are tried; no loop tried separates more
-MAX_ELEMENTS = 6  # kept after the convex step
+TRIED_SLIPS = np.geomspace(5e-3, 0.85, 14)  # of half the span: twists of slip that are tried; no loop tried separates more
+MAX_LOOP_ELEMENTS = 6  # kept after the convex step
 Dry = friction.Coulomb | friction.Stribeck | friction.LuGre  # friction whose breakaway a loop can determine
 Law = (
     hysteresis.FadingMemory
@@ -80,7 +80,7 @@ class Elements(Dissipation):
 
     def library(self, loop: TorsionLoop, gear: Gear) -> Library:
         """Return the torques of elements of unit stiffness."""
-        slips = half_span(loop) * SLIPS
+        slips = half_span(loop) * TRIED_SLIPS
         traces = unit_traces(loop.path(loop.centre), slips)
         places = tuple(range(len(slips)))
         put = Choice(places, lambda g, weights: g.replace(hysteresis=_neighbours(weights, slips)))
@@ -166,7 +166,7 @@ def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
         else:
             elements.append((k, torque))
         last = i
-    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MAX_ELEMENTS], key=lambda e: e[1] / e[0])
+    strongest = sorted(sorted(elements, key=lambda e: -e[1])[:MAX_LOOP_ELEMENTS], key=lambda e: e[1] / e[0])
     return maxwell(strongest)
 
 

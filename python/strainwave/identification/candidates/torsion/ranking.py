@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
@@ -23,21 +23,22 @@ from strainwave.identification.candidates.torsion.candidate import (
     with_drift,
 )
 from strainwave.identification.candidates.torsion.dissipation import WHOLE, WITH_A_SPRING, Dissipation
-from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN, Backlash, Negligible, SpringKind
+from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, PLAIN_SPRINGS, Backlash, Negligible, SpringKind
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
+from strainwave.statistics.linear_fit import rms_left_out
 from strainwave.statistics.residuals import correlation_length
 
 LOOP_BLOCKS = 20  # of the samples of a loop
-FOLD_COUNT = 4  # each of every fourth block
+LOOP_FOLDS = 4  # each of every fourth block
 Array = NDArray[np.float64]
 MIN_EXCESS = 0.01  # of the error of the best: a smaller difference is none
-MAX_MINIMA = 2  # of one kind that are fitted: there are many kinds
+MAX_RANKED_MINIMA = 2  # of one kind that are fitted: there are many kinds
 MAX_RESIDUAL_FACTOR = 1.25  # over the residuals of the best: models that leave more are judged by one fold
 TIMED_RUNS = 5  # of a law, of which the shortest counts
 
 
-def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
+def held_out_blocks(n: int, fold: int = LOOP_FOLDS - 1) -> NDArray[np.bool_]:
     """Return True for samples that train: all but every fourth of twenty blocks, which are held out to validate.
 
     Whole blocks, because neighbours on a loop resemble each other too much to test one by the other. The four folds hold out
@@ -46,8 +47,20 @@ def held_out_blocks(n: int, fold: int = FOLD_COUNT - 1) -> NDArray[np.bool_]:
     >>> [int((~held_out_blocks(40, fold)).sum()) for fold in range(4)]
     [10, 10, 10, 10]
     """
-    training: NDArray[np.bool_] = block_of(n) % FOLD_COUNT != fold
+    training: NDArray[np.bool_] = block_of(n) % LOOP_FOLDS != fold
     return training
+
+
+def plain_error(deflection: Array, torque: Array, parts: Iterable[NDArray[np.bool_]]) -> float:
+    """Return the error of a linear spring with dry friction by least squares, each part predicted from the others [N.m].
+
+    Args:
+        deflection: angle in the order measured [rad], shape (n,)
+        torque: shape (n,)
+        parts: True for the samples of a part, shape (n,)
+    """
+    columns = np.stack([np.ones(len(deflection)), deflection, np.sign(np.gradient(deflection))], axis=1)
+    return rms_left_out(columns, torque, parts)
 
 
 def block_of(n: int) -> NDArray[np.intp]:
@@ -116,18 +129,18 @@ def rank_loop(loop: TorsionLoop, gear: Gear, *, friction_measured: bool = False)
     tried = _TriedCandidates(loop, gear)
     dissipation = asked(loop, gear, friction_measured)
     for each in dissipation:
-        tried.add(PLAIN, [each])
+        tried.add(PLAIN_SPRINGS, [each])
     tried.drift()
     tried.add([Backlash(LINEAR), behind_play(tried.best.spring)], [tried.best.dissipation])
     if not loop.single_branch:
         tried.add([tried.best.spring], WITH_A_SPRING)
         tried.add([Negligible()], WHOLE)
         if not tried.best.dissipation.whole_spring:
-            tried.add([*PLAIN, behind_play(tried.best.spring)], [tried.best.dissipation])
+            tried.add([*PLAIN_SPRINGS, behind_play(tried.best.spring)], [tried.best.dissipation])
         tried.add([LINEAR, CUBIC], WITH_A_SPRING)
     candidates = [*tried.candidates, *tried.simpler()]
     near = MAX_RESIDUAL_FACTOR * min(_left(each) for each in candidates)
-    judged = [_judged(each, FOLD_COUNT if _left(each) < near else 1) for each in candidates]
+    judged = [_judged(each, LOOP_FOLDS if _left(each) < near else 1) for each in candidates]
     return _ordered([each for each in judged if each is not None])
 
 
@@ -146,7 +159,7 @@ class _TriedCandidates:
                     continue
                 try:
                     with _trying():
-                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_MINIMA)
+                        fitted = candidate(self.loop, self.gear, self.training, spring, dissipation, MAX_RANKED_MINIMA)
                 except (ValueError, FloatingPointError):  # of this kind nothing fits
                     continue
                 self._found[spring, dissipation] = fitted

@@ -21,10 +21,10 @@ Array = NDArray[np.float64]
 MAX_TURNS = 4  # of choosing spring and hysteresis in turn; no loop tried took more than three
 Law = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
 Spring = Law | stiffness.Backlash
-KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
-CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2])  # of half the span: play between flanks, tried
+TRIED_KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
+TRIED_CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2])  # of half the span: play of flanks
 WAVE_GENERATOR_SHARES = (0.2, 0.5, 0.8)  # of the compliance at zero torque, tried
-HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span, of flexspline and wave generator, tried
+TRIED_HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span, of flexspline and wave generator, tried
 MIN_STIFFNESS_SHARE = 1e-6  # of the secant stiffness, in place of no spring
 MIN_STIFFNESS = 1e-9  # N.m/rad
 
@@ -220,7 +220,7 @@ class Piecewise(SpringKind):
 
             return Choice((0, 1 + place), put)
 
-        knees = (half * KNEES).tolist()
+        knees = (half * TRIED_KNEES).tolist()
         return Library.of([twist, *_beyond(twist, knees)], [choice(place, knee) for place, knee in enumerate(knees)])
 
 
@@ -230,7 +230,7 @@ class ThreeSegment(SpringKind):
     words = "three-segment spring"
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
-        knees = (half * KNEES).tolist()
+        knees = (half * TRIED_KNEES).tolist()
 
         def choice(first: int, second: int) -> Choice:
             def put(g: Gear, w: Array) -> Gear:
@@ -267,7 +267,9 @@ class MultiCompliance(SpringKind):
 
     def library(self, twist: Array, half: float, gear: Gear) -> Library:
         ratio = abs(gear.kinematics.ratio)
-        shapes = [unit_compliance(half, ratio, *shape) for shape in product(WAVE_GENERATOR_SHARES, HARDENINGS, HARDENINGS)]
+        shapes = [
+            unit_compliance(half, ratio, *shape) for shape in product(WAVE_GENERATOR_SHARES, TRIED_HARDENINGS, TRIED_HARDENINGS)
+        ]
         inside = [shape for shape in shapes if np.isfinite(_torque(shape, twist)).all()]
 
         def choice(place: int, unit: stiffness.MultiCompliance) -> Choice:
@@ -296,7 +298,7 @@ class Backlash(SpringKind):
         torques: list[Array] = []
         choices: list[Choice] = []
         first = 0
-        for clearance in (half * CLEARANCES).tolist():
+        for clearance in (half * TRIED_CLEARANCES).tolist():
             behind = twist - np.clip(twist, -0.5 * clearance, 0.5 * clearance)
             law = self.law.library(behind, half - 0.5 * clearance, gear)
             choices += [_behind_play(choice, clearance, first) for choice in law.choices]
@@ -339,7 +341,7 @@ class Negligible(SpringKind):
 
 
 LINEAR, CUBIC, PIECEWISE, THREE_SEGMENT, MULTI_COMPLIANCE = Linear(), Cubic(), Piecewise(), ThreeSegment(), MultiCompliance()
-PLAIN = (LINEAR, CUBIC, PIECEWISE, THREE_SEGMENT, MULTI_COMPLIANCE)
+PLAIN_SPRINGS = (LINEAR, CUBIC, PIECEWISE, THREE_SEGMENT, MULTI_COMPLIANCE)
 
 
 def unit_compliance(
