@@ -103,7 +103,7 @@ def core(folder: Path) -> Path:
     sources = [*sorted((ROOT / "src" / "general").glob("*.cpp")), ROOT / "src" / "workbench.cpp"]
     headers = [*(ROOT / "include").rglob("*.hpp"), *(ROOT / "src").rglob("*.hpp")]
     state = hashlib.sha256("\0".join((*FLAGS, *LINK)).encode())
-    for path in [*sources, *sorted(headers), Path(__file__)]:
+    for path in [*sources, *sorted(headers)]:
         state.update(path.read_bytes())
     made, stamp = folder / "workbench.wasm", folder / "workbench.stamp"
     if made.exists() and stamp.exists() and stamp.read_text() == state.hexdigest():
