@@ -25,7 +25,7 @@ SHORTER = {
 SYMBOL = rf"(?<!\n    )(?P<symbol>{theory.SYMBOL})|"  # not the name of a parameter
 MARKED = (
     r"(?P<code>``.*?``|`[^`]+`)"
-    rf"|(?P<target>\b(?:E-[RPAT]\d+|[Dd]ocument [RPAT]|{theory.KEY})\b)|(?P<mark>[|*\\]|(?<=\w)_(?!\w))"
+    rf"|(?P<target>{theory.CITED})|(?P<mark>[|*\\]|(?<=\w)_(?!\w))"
 )
 
 
@@ -55,7 +55,7 @@ def block(text: str, symbols: str = "") -> str:
 
 
 def markup(found: re.Match[str]) -> str:
-    """Return code as it is, a symbol as a formula, an erratum or a work as a link, another character escaped."""
+    """Return code as it is, a symbol as a formula, a work as a link, another character escaped."""
     if symbol := found.groupdict().get("symbol"):
         return rf"\ :math:`{theory.symbol(symbol)}`\ "
     if (target := found["target"]) in theory.TARGETS:

@@ -100,7 +100,7 @@ def page(example: Example) -> str:
     beyond = example.line.partition(":")[2].strip()  # the title
     words = "\n\n".join(theory.linked(each) for each in (beyond[:1].upper() + beyond[1:], example.words) if each)
     parts = [
-        f"# {theory.escaped(example.title)}", theory.titled(words),
+        f"# {theory.escaped(example.title)}", words,
         f"![{theory.escaped(example.title)}](../drawn/{example.name}/{example.picture})",
         *([f"More: {more}."] if more else []),
         f"## The script\n\n`examples/{example.name}.py`:", f"```python\n{example.code}\n```",

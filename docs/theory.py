@@ -43,7 +43,7 @@ def write(folder: Path) -> None:
         sections = [saved_section(folder, model) for model in models]
         names = f"Signatures and methods: [reference](../reference/api/{name}.rst)."
         text = "\n\n".join([f"# {title}", escaped(about), names, *failure_modes(models), *sections])
-        (folder / f"{name}.md").write_text(titled(text) + "\n", encoding="utf-8")
+        (folder / f"{name}.md").write_text(text + "\n", encoding="utf-8")
 
 
 def pages() -> dict[str, tuple[str, list[Model]]]:
@@ -190,27 +190,8 @@ def symbol(written: str) -> str:
 
 
 def linked(text: str) -> str:
-    """Return the same with errata, documents and works as links; raises KeyError for one that is not described."""
-    return re.sub(
-        rf"\b(?:E-[RPAT]\d+|[Dd]ocument [RPAT]|{KEY})\b",
-        lambda found: f"[{found[0]}](../{TARGETS[found[0]]})",
-        escaped(text),
-    )
-
-
-def titled(page: str) -> str:
-    """Return a page on which the first link to each document is followed by its title."""
-    for letter, title in TITLES.items():
-        page = re.sub(rf"(\[[Dd]ocument {letter}\]\([^)]*\)(?:'s)?)", rf'\1 ("{title}")', page, count=1)
-    return page
-
-
-def anchors() -> dict[str, str]:
-    """Where each erratum stands, as MyST names headings."""
-    headings = re.findall(r"^### ((E-\w+) .*)$", ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
-    plain = {number: re.sub(r"\$[^$]*\$|[*]", "", title) for title, number in headings}
-    slugs = {number: re.sub(r"[^\w\- ]", "", title.strip().lower()).replace(" ", "-") for number, title in plain.items()}
-    return {number: f"validation/errata.md#{slug}" for number, slug in slugs.items()}
+    """Return the same with works and titles of documents as links; raises KeyError for a work that is not described."""
+    return re.sub(CITED, lambda found: f"[{found[0]}](../{TARGETS[found[0]]})", escaped(text))
 
 
 def references() -> dict[str, str]:
@@ -219,16 +200,13 @@ def references() -> dict[str, str]:
     return {key: f"theory/references.md#{key.lower()}" for key in keys}
 
 
-def titles() -> dict[str, str]:
-    """Return the title of each document, by its letter."""
-    return dict(re.findall(r'^\| \*\*([RPAT])\*\* \| "([^"]+)"', ERRATA.read_text(encoding="utf-8"), re.MULTILINE))
+def titles() -> list[str]:
+    """Return the titles of the documents that several models follow, as the headers state them."""
+    return re.findall(r'^\| \*\*[RPAT]\*\* \| "([^"]+)"', ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
 
 
-TITLES = titles()
-DOCUMENTS = {
-    f"{word} {letter}": "validation/errata.md#the-four-documents" for word in ("Document", "document") for letter in TITLES
-}
-TARGETS = anchors() | references() | DOCUMENTS
+TARGETS = references() | dict.fromkeys(titles(), "validation/errata.md#the-four-documents")
+CITED = rf"\b(?:{'|'.join(titles())}|{KEY})\b"
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------
 

@@ -5,6 +5,12 @@
 
 namespace strainwave::host {
 
+bool Reader::text_to_number(nb::handle value, const Field& field, const std::string& name, double& x) const {
+    if (!nb::isinstance<nb::str>(value) || !has_unit(field)) return false;
+    x = nb::cast<double>(nb::module_::import_("strainwave.arguments").attr("number")(owner + "." + name, value, field.unit));
+    return true;
+}
+
 void Description::add(const Field& field, const void* member, const MemberType* type) {
     members.push_back({field, static_cast<const char*>(member) - static_cast<const char*>(defaults), type});
 }
@@ -38,7 +44,7 @@ void Member::read(void* model, nb::handle value, const Reader& reader) const {
 }
 
 std::string Member::python_type(bool argument) const {
-    if (!type->part) return type->python_type(argument);
+    if (!type->part) return type->python_type(field, argument);
     std::string names;
     for (const Alternative& one : std::span(type->alternatives, type->alternative_count))
         names += (names.empty() ? "" : " | ") + qualified(one.description());
@@ -268,7 +274,7 @@ std::string documentation(const Description& description) {
     for (const Member& member : description.members) {
         const Field& field = member.field;
         text += std::string(field.name) + ": " + field.doc;
-        if (member.type->numeric && std::string_view(field.unit) != "1") text += std::string(" [") + field.unit + "]";
+        if (has_unit(field)) text += std::string(" [") + field.unit + "]";
         if (member.type->numeric && (field.min > -unbounded || field.max < unbounded)) text += ", in " + limits(field);
         if (member.type->listed) text += ", one of " + text_of(member.options());
         text += field.required  ? "; required\n"
@@ -353,7 +359,7 @@ void define_value(nb::handle type, const Description& description) {
     const nb::object property = nb::module_::import_("builtins").attr("property");
     for (const Member& member : description.members) {
         const Field& field = member.field;
-        const std::string unit = *field.unit && std::string_view(field.unit) != "1" ? std::string(" [") + field.unit + "]" : "";
+        const std::string unit = has_unit(field) ? std::string(" [") + field.unit + "]" : "";
         const nb::object getter = nb::cpp_function(
             [of, at = &member](nb::handle self) { return at->value(model_in(self, *of)); }, nb::name(field.name), nb::scope(type),
             nb::is_method(), nb::is_getter(),

@@ -32,7 +32,7 @@ struct Reader {
     }
     double number(nb::handle value, const Field& field, const std::string& name) const {
         double x = 0.0;
-        if (!to_number(value, x)) refuse_type(field, "a number", value);
+        if (!to_number(value, x) && !text_to_number(value, field, name, x)) refuse_type(field, "a number", value);
         if (!(x >= field.min && x <= field.max) || std::isinf(x))
             throw nb::value_error(
                 (owner + "." + name + " = " + with_unit(x, field.unit) + " must lie in " + limits(field)).c_str());
@@ -58,16 +58,20 @@ struct Reader {
     }
 
 private:
+    /// Takes a text with a unit, as "75 mN.m/A", for a number in the unit of the field, if that has one.
+    bool text_to_number(nb::handle value, const Field& field, const std::string& name, double& x) const;
+
     /// A sequence of numbers; a number alone is a sequence of one.
     template <class T>
     T sequence(nb::handle value, const Field& field) const {
         T list{};
-        if (double alone = 0.0; is_sequence<T> && to_number(value, alone)) {
+        const bool text = nb::isinstance<nb::str>(value);
+        if (double alone = 0.0; is_sequence<T> && ((text && has_unit(field)) || to_number(value, alone))) {
             list[0] = number(value, field, field.name);
             if constexpr (is_sequence<T>) list.count = 1;
             return list;
         }
-        if (nb::isinstance<nb::str>(value) || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
+        if (text || !nb::hasattr(value, "__iter__")) refuse_type(field, "a sequence of numbers", value);
         constexpr int capacity = sizeof(list.item) / sizeof(list.item[0]);
         int count = 0;
         for (nb::handle item : nb::iter(value)) {
@@ -97,16 +101,17 @@ nb::object to_python(const T& member) {
 
 /// The type of a member that is no part in Python's type annotations.
 template <class T>
-std::string python_type(bool argument) {
+std::string python_type(const Field& field, bool argument) {
+    const std::string number = argument && has_unit(field) ? "float | str" : "float";
     if constexpr (is_sequence<T> || is_array<T>) {
         if (!argument) return "tuple[float, ...]";
-        return is_sequence<T> ? "float | collections.abc.Sequence[float]" : "collections.abc.Sequence[float]";
+        return (is_sequence<T> ? number + " | " : "") + "collections.abc.Sequence[" + number + "]";
     } else if constexpr (std::is_enum_v<T>) {
         return "str";
     } else if constexpr (std::is_same_v<T, int>) {
         return "int";
     } else {
-        return "float";
+        return number;
     }
 }
 
@@ -147,7 +152,7 @@ struct MemberType {
     bool chosen;       ///< True if it is a law chosen from several
     nb::object (*to_python)(const void* member) = nullptr;
     void (*read)(void* member, nb::handle value, const Reader& reader, const Field& field) = nullptr;
-    std::string (*python_type)(bool argument) = nullptr;
+    std::string (*python_type)(const Field& field, bool argument) = nullptr;
     nb::object (*options)() = nullptr;
     PartOf (*part)(const void* member) = nullptr;  ///< null if it is none
     const Alternative* alternatives = nullptr;

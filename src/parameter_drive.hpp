@@ -31,46 +31,24 @@ using AtRunTime = typename detail::AtRunTime<S, Law<S>>::type;
 
 namespace detail {
 
-template <class S, class Law>
-struct AtRunTime<S, friction::Asymmetric<S, Law>> {
-    using type = friction::Asymmetric<S, AnyOf<S, friction::Levelled>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, friction::Cyclic<S, Law>> {
-    using type = friction::Cyclic<S, AnyOf<S, friction::Directed>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, friction::Thermal<S, Law>> {
-    using type = friction::Thermal<S, AnyOf<S, friction::Varying>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, sensor::Delayed<S, Law>> {
-    using type = sensor::Delayed<S, AnyOf<S, sensor::Plain>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, sensor::Noisy<S, Law>> {
-    using type = sensor::Noisy<S, AnyOf<S, sensor::Late>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, sensor::Quantised<S, Law>> {
-    using type = sensor::Quantised<S, AnyOf<S, sensor::Loud>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, stiffness::Backlash<S, Law>> {
-    using type = stiffness::Backlash<S, AnyOf<S, stiffness::Plain>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, kinematic_error::Scaled<S, Law>> {
-    using type = kinematic_error::Scaled<S, AnyOf<S, kinematic_error::Pure>>;
-};
-template <class S, class Variation>
-struct AtRunTime<S, structure::Staged<S, Variation>> {
-    using type = structure::Staged<S, AnyOf<S, variation::Models>>;
-};
-template <class S, class Density>
-struct AtRunTime<S, hysteresis::Preisach<S, Density>> {
-    using type = hysteresis::Preisach<S, AnyOf<S, hysteresis::Densities>>;
-};
+/// A law within `Outer` is chosen from a list.
+#define SW_WITHIN(Outer, List)                 \
+    template <class S, class Law>              \
+    struct AtRunTime<S, Outer<S, Law>> {       \
+        using type = Outer<S, AnyOf<S, List>>; \
+    };
+SW_WITHIN(friction::Asymmetric, friction::Levelled)
+SW_WITHIN(friction::Cyclic, friction::Directed)
+SW_WITHIN(friction::Thermal, friction::Varying)
+SW_WITHIN(sensor::Delayed, sensor::Plain)
+SW_WITHIN(sensor::Noisy, sensor::Late)
+SW_WITHIN(sensor::Quantised, sensor::Loud)
+SW_WITHIN(stiffness::Backlash, stiffness::Plain)
+SW_WITHIN(kinematic_error::Scaled, kinematic_error::Pure)
+SW_WITHIN(structure::Staged, variation::Models)
+SW_WITHIN(hysteresis::Preisach, hysteresis::Densities)
+SW_WITHIN(compensation::BristleObserver, friction::Models)
+#undef SW_WITHIN
 
 }  // namespace detail
 
@@ -82,22 +60,17 @@ using AnyGear =
 
 namespace detail {
 
-template <class S, class Gear, class Load>
-struct AtRunTime<S, compensation::ModelFeedforward<S, Gear, Load>> {
-    using type = compensation::ModelFeedforward<S, AnyGear<S>, AnyOf<S, load::Models>>;
-};
-template <class S, class Law>
-struct AtRunTime<S, compensation::BristleObserver<S, Law>> {
-    using type = compensation::BristleObserver<S, AnyOf<S, friction::Models>>;
-};
-template <class S, class Gear, class Load>
-struct AtRunTime<S, control::FeedbackLinearisation<S, Gear, Load>> {
-    using type = control::FeedbackLinearisation<S, AnyGear<S>, AnyOf<S, load::Models>>;
-};
-template <class S, class Gear, class Load>
-struct AtRunTime<S, control::KinematicErrorTracking<S, Gear, Load>> {
-    using type = control::KinematicErrorTracking<S, AnyGear<S>, AnyOf<S, load::Models>>;
-};
+/// A law that contains a model of the drive contains any gear and any load.
+#define SW_AROUND_MODEL(Outer)                                     \
+    template <class S, class Gear, class Load>                     \
+    struct AtRunTime<S, Outer<S, Gear, Load>> {                    \
+        using type = Outer<S, AnyGear<S>, AnyOf<S, load::Models>>; \
+    };
+SW_AROUND_MODEL(compensation::ModelFeedforward)
+SW_AROUND_MODEL(control::FeedbackLinearisation)
+SW_AROUND_MODEL(control::KinematicErrorTracking)
+#undef SW_AROUND_MODEL
+
 template <class S, class Law, class Compensation_>
 struct AtRunTime<S, control::Sampled<S, Law, Compensation_>> {
     using type = control::Sampled<S, AnyOf<S, control::Continuous>,

@@ -15,6 +15,8 @@ std::string with_unit(double x, const char* unit) {
     return shortest(x) + (std::strcmp(unit, "1") == 0 ? "" : std::string(" ") + unit);
 }
 
+bool has_unit(const Field& field) { return *field.unit && std::strcmp(field.unit, "1") != 0; }
+
 std::string limits(const Field& field) {
     const bool open_low = field.min <= -unbounded, open_high = field.max >= unbounded, positive = field.min == smallest;
     return (open_low   ? "(-inf"

@@ -14,6 +14,8 @@ namespace nb = nanobind;
 /// The shortest text that is read as the same number.
 std::string shortest(double x);
 std::string with_unit(double x, const char* unit);
+/// True for a number that has a unit, not for a count, a share or a part.
+bool has_unit(const Field& field);
 /// Limits of a field, as "[0, inf)".
 std::string limits(const Field& field);
 /// Message that a law is used outside its range of validity.

@@ -30,7 +30,7 @@ struct Drive {
     Meter meter{};
 
     static constexpr auto name = "drive";
-    static constexpr auto source = "document P, eqs. of motion, with r = 1/100 (E-P1) in the motor equation too (E-P2)";
+    static constexpr auto source = SW_POSITION_ARTICLE ", eqs. of motion, with r = 1/100, not 100, and in the motor equation too";
     static constexpr auto doc = R"(
         Drive of a motor, its controller, one strain wave gear, a load, and the sensors of the controller.
 

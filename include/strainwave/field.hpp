@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/array.hpp>
+#include <strainwave/documents.hpp>
 #include <strainwave/math.hpp>
 
 /// Parameters are written once: a model lists its members here, and Python, files, fits, reports and docs read the list.

@@ -30,8 +30,8 @@ struct Gear {
 
     static constexpr auto name = "gear";
     static constexpr auto source =
-        "physics: document R, sections 1-4, with the reaction of the kinematic error (errata E-R3, E-A5); for the bodies within "
-        "it, document A";
+        "physics: " SW_REVIEW
+        ", sections 1-4, with the reaction of the kinematic error, which it lacks; for the bodies within it, " SW_ACTUATOR_PAPER;
     static constexpr auto doc = R"(
         Strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
@@ -39,7 +39,7 @@ struct Gear {
                   T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
 
         T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
-        input. The review derives none (E-R3) and the actuator paper omits it (E-A5); without it energy is not conserved. e is
+        input. The review derives none and the actuator paper omits it; without it energy is not conserved. e is
         the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
 
         Friction acts at the input (wave generator), at the mesh, and at the output (bearing). The mesh lies between the

@@ -66,13 +66,14 @@ struct PlainRatio {
     S reduction{100.0};
 
     static constexpr auto name = "plain_ratio";
-    static constexpr auto source = "document P, eqs. of motion, which leave the sign of the ratio out; erratum E-P1";
+    static constexpr auto source =
+        SW_POSITION_ARTICLE ", eqs. of motion, which leave out the sign of the ratio; with r = 1/100, not 100";
     static constexpr auto doc = R"(
         Reducer of a known reduction, whose output turns with the input.
 
         .. math:: i = \omega_{in} / \omega_{out} = \text{reduction}
 
-        The degenerate kinematics of texts that ignore the sign (document P); prefer StrainWave.
+        The degenerate kinematics of texts that ignore the sign; prefer StrainWave.
 
         >>> from strainwave.kinematics import PlainRatio
         >>> PlainRatio(reduction=100.0).ratio

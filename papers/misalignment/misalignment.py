@@ -1,6 +1,6 @@
-"""Document A's study: an actuator turns through its stroke at constant speed, with and without a misaligned wave generator.
+"""An actuator turns through its stroke at constant speed, with and without a misaligned wave generator: the actuator paper.
 
-Document A shows what eccentricities and angular deviations do to torque and current, and prints no number. Here its ramp is run
+The paper shows what eccentricities and angular deviations do to torque and current, and prints no number. Here its ramp is run
 over levels of each, for each way in which the lobes may share, with the position loop closed on either shaft, and over ramp
 times and gains. Its claims are then put to the numbers.
 
@@ -22,8 +22,8 @@ import strainwave as sw
 from pure_error import PureError, pure_error
 from strainwave.diagnose import COMBINE, LOOPS, SWEEPS, ActuatorRamp, SweepLevels, swing
 
-STROKE_ANGLE = np.pi / 2.0  # rad: document A states "the maximum stroke" without its size
-STROKE_DURATION = 5.0  # s: document A
+STROKE_ANGLE = np.pi / 2.0  # rad: the paper states "the maximum stroke" without its size
+STROKE_DURATION = 5.0  # s: the paper
 DRIVE = "tilt-actuator"
 
 USUAL = "max"  # how the lobes share where one way is shown: the one with which order 2, that is observed, is of first order

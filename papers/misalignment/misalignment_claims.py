@@ -1,4 +1,4 @@
-"""Claims of document A, each in its words, with the answer of the study."""
+"""Claims of the actuator paper, each in its words, with the answer of the study."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ E1_LEVEL = 1  # index into the sweep of e_1: 20 um
 
 
 class Claim(NamedTuple):
-    """A claim of document A, the verdict, and the reason."""
+    """A claim of the paper, the verdict, and the reason."""
 
     words: str
     verdict: str
@@ -24,7 +24,7 @@ class Claim(NamedTuple):
 
 
 def claims(found: MisalignmentStudy) -> list[Claim]:
-    """All claims, in the order in which document A makes them."""
+    """All claims, in the order in which the paper makes them."""
     return [
         _detected(found),
         _radial(found),
@@ -143,7 +143,7 @@ def _radial(found: MisalignmentStudy) -> Claim:
     return Claim(
         "“e_WG,mis = θ_e,mis r_g ≅ θ_e r_g”",
         CORRECTED,
-        f"The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g (E-A4). "
+        f"The displacement acts through the flank and against the output: θ_e = −tan α_t e/r_g. "
         f"{microns(study.USUAL_E1)} are {arcmin(-study.USUAL_E1 * found.per_error(), 3)}, not {arcmin(printed, 3)}.",
     )
 
@@ -155,7 +155,7 @@ def _constant(found: MisalignmentStudy) -> Claim:
         IN_PART,
         f"Misalignment has a constant part, too: e₂ = {microns(study.USUAL_E1)} alone shifts the output by "
         f"{arcmin(abs(constant))} for good, and nothing that repeats. The setting of zero takes it away. "
-        "That of a clearance is constant only while the torque keeps its sign (E-A15).",
+        "That of a clearance is constant only while the torque keeps its sign.",
     )
 
 
@@ -164,8 +164,8 @@ def _inputs(found: MisalignmentStudy) -> Claim:
         "“The input parameters of the kinematic error model are the eccentricity (e₁ and e₂) and the angular deviations (β "
         "and α)”",
         CORRECTED,
-        "h is missing: without an offset from the centre of tilt, β acts in second order only (E-A8). e₂ and α turn with the "
-        "shaft, so that alone they leave a constant, and no ripple (E-A9). Of the ripple of the current that e₁ or β of the "
+        "h is missing: without an offset from the centre of tilt, β acts in second order only. e₂ and α turn with the "
+        "shaft, so that alone they leave a constant, and no ripple. Of the ripple of the current that e₁ or β of the "
         f"same size makes, at most {percent(silence(found), 1)} is seen; the start of the ramp makes it.",
     )
 
@@ -207,7 +207,7 @@ def _flap(found: MisalignmentStudy) -> Claim:
         f"{number(frequency(found), 3)} Hz, the loop reaches {number(gain / (2.0 * np.pi), 2)} Hz, and by itself would let "
         f"{ideal} pass. On average over the ramp {percent(share_at(found, OUTPUT))} pass, {percent(share_at(found, INPUT))} "
         "with the loop on the motor encoder: inertias, friction, the spring and the reaction of the error on the motor "
-        "decide (E-A10). Where the loop is faster than the error the claim holds for the output sensor alone: in twice the "
+        "decide. Where the loop is faster than the error the claim holds for the output sensor alone: in twice the "
         f"time and with four times the gain {percent(best[0])} pass, with the loop on the motor encoder {percent(best[1])}.",
     )
 
@@ -229,7 +229,7 @@ def _figure_3b(found: MisalignmentStudy) -> Claim:
         "Figure 3.b: “the differences between the nominal torque and the one in the presence only of angular deviations” in "
         "the text, “angular deviation misalignment kinematic error” in the caption",
         CORRECTED,
-        f"The two are not the same quantity (E-A14), so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° "
+        f"The two are not the same quantity, so both are drawn. With a tilt of {number(degrees(study.SHOWN_TILT), 2)}° "
         f"the error swings by ±{arcmin(error)}, the torque by ±{quantity(torque, 'N.m', 2)}.",
     )
 

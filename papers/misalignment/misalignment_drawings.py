@@ -1,4 +1,4 @@
-"""Drawings of what document A calls misalignment: its Figures 1.b and 2, drawn anew with every quantity named."""
+"""Drawings of what the actuator paper calls misalignment: its Figures 1.b and 2, drawn anew with every quantity named."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ DRAWN_SHIFT, DRAWN_DIRECTION, DRAWN_TURN = 0.17, np.radians(35.0), np.radians(65
 
 
 def wave_generator() -> Figure:
-    """Draw a misaligned wave generator in the circular spline, seen along the shaft (document A's Figure 1.b)."""
+    """Draw a misaligned wave generator in the circular spline, seen along the shaft (the paper's Figure 1.b)."""
     figure = Figure((FIGURE_WIDTH, 4.6), layout="constrained")
     axes = figure.subplots()
     _ring(axes)
@@ -83,7 +83,7 @@ def scales(major_radius: float, minor_radius: float, eccentricity: float) -> tup
 
 
 def angles() -> Figure:
-    """Draw eccentricities and angular deviations with their frames (document A's Figure 2)."""
+    """Draw eccentricities and angular deviations with their frames (the paper's Figure 2)."""
     figure = Figure((FIGURE_WIDTH, 6.4), layout="constrained")
     above = figure.add_gridspec(2, 2, height_ratios=(1.25, 1.0))
     _plan(figure.add_subplot(above[0, :]))

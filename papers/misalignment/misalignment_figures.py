@@ -1,4 +1,4 @@
-"""Figures of the study of document A."""
+"""Figures of the study of the actuator paper."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ def ramp_figure(found: MisalignmentStudy) -> Figure:
 
 
 def difference_figure(found: MisalignmentStudy) -> Figure:
-    """Draw document A's Figure 3.b, read both ways: differences of the torque, and the kinematic error, for three tilts."""
+    """Draw the paper's Figure 3.b, read both ways: differences of the torque, and the kinematic error, for three tilts."""
     ramp, runs, figure = found.ramp, found.shown[OUTPUT], Figure((FIGURE_WIDTH, 7.0), layout="constrained")
     whole, torque, error = figure.subplots(3, 1)
     for tilt, (colour, line) in zip(study.SHOWN_TILTS[::-1], TILTED[::-1], strict=True):

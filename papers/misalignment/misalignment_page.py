@@ -1,4 +1,4 @@
-"""The page of the study of document A, and the same in a few lines for a terminal."""
+"""The page of the study of the actuator paper, and the same in a few lines for a terminal."""
 
 from __future__ import annotations
 

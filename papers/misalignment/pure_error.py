@@ -1,4 +1,4 @@
-"""The pure kinematic error over a turn against a measured curve, and `Misalignment` fitted to it: document A's Figure 3.a."""
+"""The pure kinematic error over a turn against a measured curve, and `Misalignment` fitted to it: Figure 3.a of the paper."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 M_PER_MICRON = 1e-6  # m
 FULL_TURN = 2.0 * np.pi  # rad
 MIN_POINTS = 24  # of a measured curve over a turn
-# Document A shows its measured curve as a picture alone. Assumed: the amplitudes of E-A5, and phases.
+# The paper shows its measured curve as a picture alone. Assumed: the amplitudes that the page of errata derives, and phases.
 ASSUMED_CURVE = sw.kinematic_error.Fourier(order=[1, 2, 4], amplitude=[0.8e-4, 3.0e-4, 0.5e-4], phase=[0.3, -0.8, 0.7])
 
 

@@ -1,10 +1,10 @@
-"""The three readings of document P's Table 2, and document P's experiments with each of them.
+"""The three readings of the position control article's Table 2, and its experiments with each of them.
 
     python papers/position-control/friction_table.py [--out FOLDER]
 
 By its title Table 2 is viscous friction: the part b v + B, which is added to Coulomb's. By its columns it is the whole
 friction. Its speeds may be those of the motor or of the output. Each reading is fitted by a line, and contradicts document
-P's other tables (E-P6, E-P7, E-P11). Nothing is averaged.
+the other tables; see the page of errata. Nothing is averaged.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike
 from position_control import TABLE_4
 from strainwave.typeset import number
 
-SPEED, FRICTION = (0.1, 0.5, 1.0, 2.0, 5.0), (0.012, 0.028, 0.045, 0.078, 0.165)  # rad/s, N.m: document P, Table 2, measured
+SPEED, FRICTION = (0.1, 0.5, 1.0, 2.0, 5.0), (0.012, 0.028, 0.045, 0.078, 0.165)  # rad/s, N.m: the article, Table 2, measured
 CONTRADICTION_SIGMA = 3.0  # standard deviations: two numbers further apart contradict each other
-PRINTED = "document P's drive, r = 1/100"
+PRINTED = "the article's drive, r = 1/100"
 FIGURES = ("root mean square error [rad]", "largest error [rad]", "correlation coefficient [1]")
 
 
@@ -50,7 +50,7 @@ class Reading:
 
 
 def average_law() -> sw.friction.PositionDependent:
-    """Return document P's friction over the angle without its periodic part."""
+    """Return the article's friction over the angle without its periodic part."""
     law: Any = sw.load("position-drive-full-friction").gear.friction_input
     average: sw.friction.PositionDependent = law.replace(cosine=[], sine=[])
     return average
@@ -97,7 +97,7 @@ def readings(speed: ArrayLike = SPEED, torque: ArrayLike = FRICTION, reduction: 
 
 
 def commands() -> dict[str, sw.scenario.Scenario]:
-    """Return the three experiments of document P: step, 1 Hz sine and pulse train of the output angle [rad], from zero."""
+    """Return the three experiments of the article: step, 1 Hz sine and pulse train of the output angle [rad], from zero."""
     return {
         "step": sw.scenario.step(amplitude=0.05, duration=2.0, start=0.1),
         "sine": sw.scenario.sine(amplitude=0.05, frequency=1.0, duration=3.0),
@@ -106,7 +106,7 @@ def commands() -> dict[str, sw.scenario.Scenario]:
 
 
 def experiments() -> dict[str, dict[str, sw.Run]]:
-    """Return runs of each experiment with each reading, and with document P's own drive, by their names."""
+    """Return runs of each experiment with each reading, and with the article's own drive, by their names."""
     printed = sw.load("position-drive")
     drives = {each.name: printed.replace({"gear.friction_input": _law(each, printed)}) for each in readings()}
     drives[PRINTED] = printed
@@ -117,7 +117,7 @@ def experiments() -> dict[str, dict[str, sw.Run]]:
 
 
 def _law(reading: Reading, printed: sw.Drive) -> sw.friction.Coulomb:
-    """Return the friction law of a reading; the excess of the static friction is document P's."""
+    """Return the friction law of a reading; the excess of the static friction is the article's."""
     law: Any = printed.gear.friction_input
     dry = reading.coulomb + (law.coulomb if reading.part else 0.0)
     return sw.friction.Coulomb(coulomb=dry, breakaway=dry * law.breakaway / law.coulomb, viscous=reading.viscous)
@@ -135,7 +135,7 @@ def summary(found: dict[str, dict[str, sw.Run]]) -> Iterator[str]:
     for reading in readings():
         yield f"{reading.name} contradicts the other tables: {'; '.join(reading.contradicts)}."
     for name, runs in found.items():
-        yield f"\n| {name} | {' | '.join(runs)} | document P, Table 4 |\n|{'---|' * (len(runs) + 2)}"
+        yield f"\n| {name} | {' | '.join(runs)} | article, Table 4 |\n|{'---|' * (len(runs) + 2)}"
         for what, values, published in zip(
             FIGURES, zip(*map(figures_of, runs.values()), strict=True), TABLE_4[name], strict=True
         ):

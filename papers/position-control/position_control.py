@@ -1,7 +1,7 @@
-"""Document P's three experiments with its full and its simplified friction, and where the simplified one stops to suffice.
+"""The position control article's experiments with full and simplified friction, and where the simplified one stops to suffice.
 
-Document P holds that average friction suffices "in precision pulse control where the control angle range is small". Both
-models run under the same command and the same controller; their difference is what the simplification costs. Document P
+The article holds that average friction suffices "in precision pulse control where the control angle range is small". Both
+models run under the same command and the same controller; their difference is what the simplification costs. The article
 describes neither its controller nor its amplitudes, and prints no measurement: those here are assumed, and Table 4 is not
 reproduced.
 
@@ -28,11 +28,11 @@ COMPARED = ("output_angle", "input_angle", "current")
 SETTLING_BAND = 0.02  # share of a change within which a response has settled [1]
 
 REST_ANGLE = 0.05  # rad at the output, 5 rad at the motor: no overshoot leaves the domain of the friction
-STEP_AMPLITUDE, SINE_AMPLITUDE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows (E-P13)
+STEP_AMPLITUDE, SINE_AMPLITUDE = 0.04, 0.03  # rad at the output: as large as the spread of Table 4 allows
 SAMPLE_TIME = 1e-3  # s
 
-FIT_ERROR = 0.0052  # N.m: document P, Table 1, root mean square error of the average friction
-# Document P, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
+FIT_ERROR = 0.0052  # N.m: the article, Table 1, root mean square error of the average friction
+# The article, Table 4: root mean square error [rad], largest error [rad], correlation coefficient. It compares simulated with
 # measured responses, and prints neither its amplitudes nor its measurements.
 TABLE_4 = {
     "step": (0.0021, 0.0050, 0.995),
@@ -99,7 +99,7 @@ class PositionControl:
         under_control: moves of the motor under the controller. Columns: `stroke` [rad]; `output_angle` [rad] and `current` [A],
             root mean square of the difference of full and simplified; the same of the output angle [rad] between other models:
             `without_periodic`, simplified and the full one without its periodic part; `averaged`, full and a constant averaged
-            over the stroke; `fit_error`, simplified and a constant that is wrong by the error of document P's fit; `used`,
+            over the stroke; `fit_error`, simplified and a constant that is wrong by the error of the article's fit; `used`,
             the root mean square of the full model's current [A]
         by_pulse: moves by a pulse of each voltage in open loop. Columns: `stroke` [rad] of the simplified model, `width` [s] of
             the pulse, and the strokes [rad] of the others: `full`, `without_periodic`, `averaged`, and `stronger` and `weaker`,

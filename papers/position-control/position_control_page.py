@@ -1,4 +1,4 @@
-"""The page of the study of document P's experiments, its figures, and the same in a few lines for a terminal."""
+"""The page of the position control article's experiments, its figures, and the same in a few lines for a terminal."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _answer(found: PositionControl) -> Iterator[str]:
     yield f"for the stroke of a pulse in open loop up to {by_voltage}"
     largest = f"{limits['largest']} rms at most, {limits['times_less']} times less than the least error of Table 4"
     yield f"under the controller {limits['control']}: the output differs by {largest}"
-    yield "Table 4 of document P compares with measurements that were not published; it is not reproduced"
+    yield "Table 4 of the article compares with measurements that were not published; it is not reproduced"
 
 
 def rows(experiment: CommandExperiment) -> list[ExperimentRow]:
@@ -325,7 +325,7 @@ def control_figure(found: PositionControl) -> Figure:
         ("fit_error", "effect of the error of the fit", MODELS[SIMPLIFIED]),
     ):
         axes.plot(moves["stroke"], 1e3 * moves[name], label=label, **style)
-    axes.axhline(1e3 * LEAST_OF_TABLE_4, color="tab:blue", linewidth=1.2, label="least error of document P's Table 4")
+    axes.axhline(1e3 * LEAST_OF_TABLE_4, color="tab:blue", linewidth=1.2, label="least error of the article's Table 4")
     labels = {"ylabel": "rms difference of the output angle [mrad]", "xlabel": "stroke of the motor [rad]"}
     axes.set(xscale="log", yscale="log", **labels)
     axes.legend()

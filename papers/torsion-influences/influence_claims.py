@@ -1,4 +1,4 @@
-"""Entries of document T's Table 3, each in its words, with the answers of the models and of measured series."""
+"""Entries of the torsion article's Table 3, each in its words, with the answers of the models and of measured series."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from torsion_influences import OWN, SPECIMEN, CatalogueRow, Influence, Sweep, po
 
 Array = NDArray[np.float64]
 
-FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where document T speaks of an order of magnitude
+FAR_BELOW = 0.5  # ratio of stiffnesses: "remains low relative to", where the article speaks of an order of magnitude
 FIRST_SHARED_RATIO = 80  # ratio from which on the catalogue states one stiffness of a size for all ratios
 
 CONFIRMED, IN_PART, CONTRADICTED, UNDECIDABLE = "confirmed", "confirmed in part", "contradicted", "undecidable"
@@ -24,7 +24,7 @@ HIGH, LOW, HYSTERESIS = "High-stiffness regime", "Low-stiffness (reversal) regim
 TORQUE, RATIO, MATERIAL = "Applied torque level", "Gear reduction ratio", "Flexspline material & heat treatment"
 PRELOAD, TEMPERATURE, LIFE = "Wave generator bearing preload", "Operating temperature", "Life of a unit"
 
-# What of a series speaks to an entry: factor, quantity and the sign that document T expects; 0 for any change.
+# What of a series speaks to an entry: factor, quantity and the sign that the article expects; 0 for any change.
 SPEAKS: dict[tuple[str, str], tuple[tuple[str, str, int], ...]] = {
     (TORQUE, HIGH): (("torque_max", "stiffness", 1), ("torque_max", "high_stiffness", 1)),
     (TORQUE, LOW): (("torque_max", "low_stiffness", 1),),
@@ -49,7 +49,7 @@ class InfluenceClaim:
     Attributes:
         parameter: the row
         regime: the column
-        words: of document T
+        words: of the article
         verdict, answer: by the models and the catalogue
         measured_verdict, measured: by the series; empty where it does not speak to the entry
     """
@@ -135,14 +135,14 @@ def entries(found: Influence) -> list[InfluenceClaim]:
 
 
 def life(found: Influence) -> InfluenceClaim | None:
-    """Return the claim about the age of units, which document T leaves to future work; None without such a series."""
+    """Return the claim about the age of units, which the article leaves to future work; None without such a series."""
     trends = [each for each in found.trends if each.factor in ("cycles", "hours")]
     if not trends:
         return None
     changed = [each for each in trends if each.significant and not each.together_with]
     verdict = CONFIRMED if changed else UNDECIDABLE
     words = "Future work may focus on … correlating the measured parameters with long-term wear and performance degradation."
-    answer = "Document T measured nothing of it, and no model of this package wears."
+    answer = "The article measured nothing of it, and no model of this package wears."
     return InfluenceClaim(LIFE, "All", words, UNDECIDABLE, answer, verdict, tuple(map(trend_words, trends)))
 
 
@@ -150,7 +150,7 @@ def life(found: Influence) -> InfluenceClaim | None:
 
 
 def usual(sweep: Sweep, name: str) -> Array:
-    """A figure over the torques that document T’s sweep is taken to span."""
+    """A figure over the torques that the article’s sweep is taken to span."""
     return np.asarray(sweep[name][sweep.levels >= study.LOWEST_SHARE * sweep.levels[-1] * (1.0 - 1e-9)])
 
 
@@ -168,7 +168,7 @@ def _torque_high(found: Influence) -> tuple[str, str]:
         f"From {percent(study.LOWEST_SHARE)} of {nm(found.torque)} on, the unloading slope goes from {stiff(high[0])} to "
         f"{stiff(high[-1])}, its power of the torque falling from {number(float(local.max()), 2)} to "
         f"{number(float(local[-1]), 2)}, while in the smallest loop, of {nm(sweep.levels[0])}, it is "
-        f"{stiff(sweep['high_stiffness'][0])}, and document T’s row, one torque, gives one slope only ({stiff(law)})."
+        f"{stiff(sweep['high_stiffness'][0])}, and the article’s row, one torque, gives one slope only ({stiff(law)})."
     )
 
 
@@ -180,7 +180,7 @@ def _torque_low(found: Influence) -> tuple[str, str]:
     verdict = CONFIRMED if all(parts) else IN_PART if any(parts) else CONTRADICTED
     return verdict, (
         f"From {percent(study.LOWEST_SHARE)} to all of {nm(found.torque)} the loading slope goes from {stiff(low[0])} to "
-        f"{stiff(low[-1])}, which is {number(ratio, 2)} of the unloading slope there; document T’s gear has "
+        f"{stiff(low[-1])}, which is {number(ratio, 2)} of the unloading slope there; the article’s gear has "
         f"{number(other, 2)}."
     )
 
@@ -194,7 +194,7 @@ def _torque_area(found: Influence) -> tuple[str, str]:
     begin = f"Nothing is lost up to {quantity(still, 'N.m', 4)}; the" if still > 0.0 else "The"
     return CONFIRMED if _rises(usual(sweep, "area")) else CONTRADICTED, (
         f"{begin} area grows with the power {number(slope.value, 3)} ± {number(slope.half_width, 2)} of the torque from "
-        f"{percent(study.LOWEST_SHARE)} of {nm(found.torque)} on; document T’s gear loses nothing up to "
+        f"{percent(study.LOWEST_SHARE)} of {nm(found.torque)} on; the article’s gear loses nothing up to "
         f"{quantity(other, 'N.m', 4)} and no more than {quantity(float(tested['area'].max()), 'J', 4)} once its soft range is "
         "used up."
     )
@@ -230,7 +230,7 @@ def _ratio_high(found: Influence) -> tuple[str, str]:
     first, last = sized[0], sized[-1]
     return CONTRADICTED if falls == 0 else IN_PART, (
         f"Of one size the catalogue’s stiffness at the output falls in {falls} of {steps} comparisons of ratios 30, 50 and "
-        f"{FIRST_SHARED_RATIO}, from which on it states one value for all ratios (E-T10; "
+        f"{FIRST_SHARED_RATIO}, from which on it states one value for all ratios ("
         f"size 25, ratio {first.ratio} to {last.ratio}: K₁ {stiff(first.k1)} to {stiff(last.k1)}); what falls is K/i² at the "
         f"input, with the power {number(seen.value, 3)} ± {number(seen.half_width, 2)} of the ratio."
     )
@@ -290,7 +290,7 @@ def _heat_treatment(_: Influence) -> tuple[str, str]:
 
 def _yielding(_: Influence) -> tuple[str, str]:
     return UNDECIDABLE, (
-        "No model here has yield or fatigue, and document T measured 1 flexspline; loops of flexsplines of one design in "
+        "No model here has yield or fatigue, and the article measured 1 flexspline; loops of flexsplines of one design in "
         "two heat treatments, in the same wave generator, would decide."
     )
 
@@ -306,7 +306,7 @@ def _damping(found: Influence) -> tuple[str, str]:
     here = f"{percent(study.LOSS_FACTOR / own)} of this gear’s loop and " if own > 0.0 else ""
     return UNDECIDABLE, (
         f"A loss factor of steel of {number(study.LOSS_FACTOR, 1)} (order of magnitude) would make {here}"
-        f"{percent(study.LOSS_FACTOR / tested)} of document T’s, which no loop separates from friction; loops too small to "
+        f"{percent(study.LOSS_FACTOR / tested)} of the article’s, which no loop separates from friction; loops too small to "
         "slip would decide."
     )
 
@@ -396,7 +396,7 @@ def _warm_area(found: Influence) -> tuple[str, str]:
     steel = exp(40.0 * found.rates.stiffness) - 1.0
     return IN_PART, (
         f"Dry friction changes the area at the input by {percent(change)} from 20 to 60 °C and the modulus alone by less than "
-        f"{percent(steel)}, but viscosity by 0 %: document T’s images show states of rest, in which nothing flows."
+        f"{percent(steel)}, but viscosity by 0 %: the article’s images show states of rest, in which nothing flows."
     )
 
 

@@ -40,7 +40,7 @@ def page(found: Influence) -> str:
         counts=list(counts(table)),
         levels=[
             _level_table(f"{found.gear_set.name}, at the output", found.amplitude[OWN], ARCMIN_PER_RADIAN, "′"),
-            _level_table("Document T’s gear, at the input", found.amplitude[SPECIMEN], degrees(1.0), "°"),
+            _level_table("The article’s gear, at the input", found.amplitude[SPECIMEN], degrees(1.0), "°"),
         ],
         steps=steps_and_falls(found.rows)[0],
         sizes=list(_size_rows(found)),
@@ -74,7 +74,7 @@ def tables(found: Influence) -> dict[str, sw.Recording]:
     """The sweeps as tables, by name."""
     named = {
         "torque-level": (found.amplitude[OWN], "torque_max", "N.m"),
-        "torque-level-document-t": (found.amplitude[SPECIMEN], "torque_max", "N.m"),
+        "torque-level-article": (found.amplitude[SPECIMEN], "torque_max", "N.m"),
         "modulus": (found.material, "modulus", "1"),
         "temperature": (found.temperature, "temperature", "K"),
     }

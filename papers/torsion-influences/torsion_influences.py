@@ -1,4 +1,4 @@
-"""Influences on a torsion loop: document T's Table 3, row by row, by the models and by measured series.
+"""Influences on a torsion loop: the torsion article's Table 3, row by row, by the models and by measured series.
 
 python papers/torsion-influences/torsion_influences.py [GEAR] [--torque N.m] [--measured series.csv] [--out FOLDER]
 """
@@ -21,9 +21,9 @@ from strainwave.rig import Cycle, Factors, Series, Trend, cycle, cycle_to
 
 Array = NDArray[np.float64]
 
-PEAK_TORQUE = 0.36  # N.m, at the input: of document T's loops
+PEAK_TORQUE = 0.36  # N.m, at the input: of the article's loops
 SHARES = (0.02, 0.04, 0.07, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)  # of the largest torque
-LOWEST_SHARE = 0.2  # share of the peak torque at which document T's sweep of amplitudes begins (assumed) [1]
+LOWEST_SHARE = 0.2  # share of the peak torque at which the article's sweep of amplitudes begins (assumed) [1]
 DRAWN = (0.2, 0.4, 0.6, 0.8, 1.0)  # shares whose loops are drawn
 MAX_HALVINGS = 50  # of the interval in which a threshold of the torque lies: then it is as narrow as rounding
 MIN_LOSSLESS = 1e-3  # of the largest torque: below, a loss that grows with the torque cannot be separated from rounding
@@ -134,12 +134,12 @@ class CatalogueRow:
 
 @dataclass(frozen=True)
 class Influence:
-    """Test of document T's Table 3 by models and measurements.
+    """Test of the article's Table 3 by models and measurements.
 
     Attributes:
         gear_set: the gear
         torque: largest torque at the output [N.m]
-        amplitude: loops over the torque at the output, and those of document T's gear at the input
+        amplitude: loops over the torque at the output, and those of the article's gear at the input
         lossless: the torque up to which a loop loses nothing, of both gears [N.m]
         drawn: the loops that are drawn of both
         rows: what the catalogue states
@@ -174,11 +174,11 @@ class Influence:
         return self.torque / abs(float(self.gear_set.gear.kinematics.ratio))
 
 
-OWN, SPECIMEN = "gear", "document T"
+OWN, SPECIMEN = "gear", "article"
 
 
 def influence(gear_set: sw.GearSet, torque: float | None = None, series: Series | None = None) -> Influence:
-    """Vary the influences of document T's Table 3 with the models, and test a measured series for them.
+    """Vary the influences of the article's Table 3 with the models, and test a measured series for them.
 
     Args:
         gear_set: the gear, without stages
@@ -196,7 +196,7 @@ def influence(gear_set: sw.GearSet, torque: float | None = None, series: Series 
     peak, rates, held = torque / abs(float(gear.kinematics.ratio)), rates_of(gear), held_at_rest(gear)
     _check_turns(torque, peak, held)
     trends = tuple(sw.rig.analyse_series(series)) if series is not None else ()
-    tested, loops = _document_t()
+    tested, loops = _specimen()
     amplitude = {OWN: over_torque(gear, torque), SPECIMEN: tested}
     drawn = {OWN: tuple(cycle_to(gear, share * torque) for share in DRAWN), SPECIMEN: loops}
     rows = catalogue_rows()
@@ -205,7 +205,7 @@ def influence(gear_set: sw.GearSet, torque: float | None = None, series: Series 
         gear_set,
         torque,
         amplitude,
-        {OWN: lossless_torque(gear, torque), SPECIMEN: _lossless_of_document_t()},
+        {OWN: lossless_torque(gear, torque), SPECIMEN: _lossless_of_specimen()},
         drawn,
         rows,
         _over(MODULI, lambda e: cycle_to(gear, torque, factors=Factors(e, 1.0, 1.0))),
@@ -220,16 +220,16 @@ def influence(gear_set: sw.GearSet, torque: float | None = None, series: Series 
 
 
 @cache
-def _document_t() -> tuple[Sweep, tuple[Cycle, ...]]:
-    """The loops of document T's gear at its input: over the torque, and those that are drawn."""
+def _specimen() -> tuple[Sweep, tuple[Cycle, ...]]:
+    """The loops of the article's gear at its input: over the torque, and those that are drawn."""
     tested = sw.rig.printed_gear(0)
     loops = tuple(cycle_to(tested, share * PEAK_TORQUE, side="input") for share in DRAWN)
     return over_torque(tested, PEAK_TORQUE, "input"), loops
 
 
 @cache
-def _lossless_of_document_t() -> float:
-    """The torque at the input up to which a loop of document T's gear loses nothing [N.m]; it has no friction there."""
+def _lossless_of_specimen() -> float:
+    """The torque at the input up to which a loop of the article's gear loses nothing [N.m]; it has no friction there."""
     tested = sw.rig.printed_gear(0)
     ratio = abs(float(tested.kinematics.ratio))
     return lossless_torque(tested, PEAK_TORQUE * ratio) / ratio
@@ -336,7 +336,7 @@ def _catalogue_row(name: str) -> CatalogueRow:
 
 
 def compliance_shares(name: str = "tilt-actuator") -> dict[str, float]:
-    """Shares of the compliance at the output, wave generator held, of a gear of stages (document A, Eq. 1 corrected).
+    """Shares of the compliance at the output, wave generator held, of a gear of stages (the actuator paper, Eq. 1 corrected).
 
     1/K_out = 1/K_t + tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1/K_CS
     """
@@ -353,7 +353,7 @@ def compliance_shares(name: str = "tilt-actuator") -> dict[str, float]:
 
 
 def main() -> None:
-    """Test document T's table of influences, write tables, figures and page.md into a folder, and print the results."""
+    """Test the article's table of influences, write tables, figures and page.md into a folder, and print the results."""
     from influence_page import summary, tables, write_page
 
     options = ArgumentParser(description=main.__doc__)

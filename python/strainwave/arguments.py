@@ -22,13 +22,19 @@ MIN_PROBABILITY = 1e-12  # of an error: no measurement shows less
 def number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
     """A number in the interval from `low` to `high`, whose ends belong to it where the bracket is square.
 
-    >>> number("dt", 1, "s", low=0.0)
-    1.0
+    A number with a unit may be given as a text that contains the unit.
+
+    >>> number("dt", 1, "s", low=0.0), number("dt", "2 ms", "s", low=0.0)
+    (1.0, 0.002)
     >>> number("dt", -1.0, "s", low=0.0)
     Traceback (most recent call last):
     ValueError: dt = -1.0 s must lie in (0, inf)
     """
     if not isinstance(value, Real) or isinstance(value, bool):
+        if isinstance(value, str) and unit not in ("", "1"):
+            from strainwave.files.entries import number_of
+
+            return number(name, number_of(name, value, unit), unit, brackets, low, high)
         raise TypeError(f"{name} must be a number, not {shortened(value)}")
     try:
         given = float(value)
@@ -41,6 +47,13 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
         allowed = "be finite" if interval == "(-inf, inf)" else f"lie in {interval}"
         raise ValueError(f"{f'{name} = {value} {unit}'.rstrip()} must {allowed}")
     return given
+
+
+def bare_number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
+    """As `number`, but a text is refused: for a value that is stored as it is given."""
+    if isinstance(value, str):
+        raise TypeError(f"{name} must be a number, not {shortened(value)}")
+    return number(name, value, unit, brackets, low, high)
 
 
 def sized(name: str, value: object, unit: str = "", low: float = 0.0, high: float = inf) -> float:

@@ -26,6 +26,8 @@ class Model(Presented):
         laws = [f"{name.replace('_', ' ')} {type(getattr(self, name)).__name__}" for name in own]
         gear = getattr(self, "gear", self)
         ratio = [f"ratio {float(gear.kinematics.ratio):g}"] if hasattr(gear, "kinematics") else []
+        if hasattr(self, "motor") and "motor" not in own:
+            laws.insert(0, f"motor {type(self.motor).__name__} by default")
         return ", ".join([*ratio, *laws]) or counted(len(_core.parameters(self)), "number")
 
     def _rows(self: Any) -> Iterator[Row]:

@@ -21,30 +21,14 @@ struct Around<compensation::ModelFeedforward<double>, ModelWithin> : AroundModel
 template <>
 struct Around<compensation::ModelFeedforward<Slope>, ModelWithin> : AroundModel<Slope> {};
 
-template <Requests list>
-struct RequestList {
-    using type = compensation::Feedforwards;
-};
-template <>
-struct RequestList<Requests::dither> {
-    using type = compensation::Dithers;
-};
-
-template <Corrections list>
-struct CorrectionList {
-    using type = compensation::Learners;
-};
-template <>
-struct CorrectionList<Corrections::observer> {
-    using type = compensation::Observers;
-};
-
 }  // namespace detail
 
 template <class S, Requests list>
-using FeedforwardLaws = Laws<S, typename detail::RequestList<list>::type, ModelWithin>;
+using FeedforwardLaws =
+    Laws<S, std::conditional_t<list == Requests::dither, compensation::Dithers, compensation::Feedforwards>, ModelWithin>;
 template <class S, Corrections list>
-using CorrectionLaws = Laws<S, typename detail::CorrectionList<list>::type, Friction<S>>;
+using CorrectionLaws =
+    Laws<S, std::conditional_t<list == Corrections::observer, compensation::Observers, compensation::Learners>, Friction<S>>;
 
 template <class S, Requests list>
 void Feedforward<S, list>::read(kernel::Reader<S>& from) {

@@ -39,26 +39,13 @@ SW_AROUND_MODEL(KinematicErrorTracking)
 template <class S>
 using ControlLaws = Laws<S, control::Models, Control<S>>;
 
-template <class S>
-void Control<S>::read(kernel::Reader<S>& from) {
-    ControlLaws<S>::read(*this, from);
-}
-template <class S>
-void Control<S>::places(Places& found) const {
-    ControlLaws<S>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); });
-}
+SW_READ(Control)
+SW_STATE(Control)
 template <class S>
 void Control<S>::discrete_places(Places& found) const {
     ControlLaws<S>::visit(*this, [&](const auto& law) { add_places<S>(law, control::initial_discrete<S>(law), found); });
 }
-template <class S>
-auto Control<S>::initial_state() const -> State {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(strainwave::initial_state(law)); });
-}
-template <class S>
-auto Control<S>::initial_discrete() const -> Discrete {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<Discrete>(control::initial_discrete<S>(law)); });
-}
+SW_PACK(Control, Discrete, initial_discrete, (), control::initial_discrete<S>(law))
 template <class S>
 S Control<S>::act(const State& x, const Command& command, const Measurement& measured) const {
     return ControlLaws<S>::visit(*this, [&]<class Law>(const Law& law) {
@@ -68,49 +55,18 @@ S Control<S>::act(const State& x, const Command& command, const Measurement& mea
             return law.act(unpack_state<S>(law, x), command, measured);
     });
 }
-template <class S>
-auto Control<S>::rate(const State& x, const Command& command, const Measurement& measured) const -> State {
-    return ControlLaws<S>::visit(
-        *this, [&](const auto& law) { return pack_slots<State>(law.rate(unpack_state<S>(law, x), command, measured)); });
-}
-template <class S>
-auto Control<S>::relaxation_rate() const -> State {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return pack_slots<State>(law.relaxation_rate()); });
-}
-template <class S>
-S Control<S>::fastest() const {
-    return ControlLaws<S>::visit(*this, [](const auto& law) { return strainwave::fastest<S>(law); });
-}
-template <class S>
-S Control<S>::actuation(const State& x, const Discrete& held, const Command& command, const Measurement& measured) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) {
-        return control::actuation(law, unpack_state<S>(law, x), unpack_discrete<S>(law, held), command, measured);
-    });
-}
-template <class S>
-S Control<S>::held(const Discrete& x) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::held<S>(law, unpack_discrete<S>(law, x)); });
-}
-template <class S>
-auto Control<S>::sampled(const Discrete& x, const S& within, const Command& command, const Measurement& measured) const
-    -> Discrete {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) {
-        return pack_slots<Discrete>(control::sampled(law, unpack_discrete<S>(law, x), within, command, measured));
-    });
-}
-template <class S>
-auto Control<S>::elapsed(const Discrete& x, const S& dt) const -> Discrete {
-    return ControlLaws<S>::visit(
-        *this, [&](const auto& law) { return pack_slots<Discrete>(control::elapsed(law, unpack_discrete<S>(law, x), dt)); });
-}
-template <class S>
-bool Control<S>::due(const Discrete& x, const S& within) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::due(law, unpack_discrete<S>(law, x), within); });
-}
-template <class S>
-control::Schedule<S> Control<S>::schedule(const Discrete& x) const {
-    return ControlLaws<S>::visit(*this, [&](const auto& law) { return control::schedule<S>(law, unpack_discrete<S>(law, x)); });
-}
+SW_PACK(Control, State, rate, (const State& x, const Command& command, const Measurement& measured),
+        law.rate(unpack_state<S>(law, x), command, measured))
+SW_PACK(Control, State, relaxation_rate, (), law.relaxation_rate())
+SW_CALL(Control, S, fastest, (), strainwave::fastest<S>(law))
+SW_CALL(Control, S, actuation, (const State& x, const Discrete& held, const Command& command, const Measurement& measured),
+        control::actuation(law, unpack_state<S>(law, x), unpack_discrete<S>(law, held), command, measured))
+SW_CALL(Control, S, held, (const Discrete& x), control::held<S>(law, unpack_discrete<S>(law, x)))
+SW_PACK(Control, Discrete, sampled, (const Discrete& x, const S& within, const Command& command, const Measurement& measured),
+        control::sampled(law, unpack_discrete<S>(law, x), within, command, measured))
+SW_PACK(Control, Discrete, elapsed, (const Discrete& x, const S& dt), control::elapsed(law, unpack_discrete<S>(law, x), dt))
+SW_CALL(Control, bool, due, (const Discrete& x, const S& within), control::due(law, unpack_discrete<S>(law, x), within))
+SW_CALL(Control, control::Schedule<S>, schedule, (const Discrete& x), control::schedule<S>(law, unpack_discrete<S>(law, x)))
 
 SW_GENERAL(Control)
 

@@ -163,6 +163,33 @@ void add_state_places(const Law& law, Places& found) {
         add_places<S>(law, StateOf<S, Law>(strainwave::initial_state(law)), found);
 }
 
+// Functions of a part, each of which is that of the law that it holds. The laws of `Part` are `PartLaws<S>`.
+
+/// Defines a function that returns an expression of `law`.
+#define SW_CALL(Part, Result, function, arguments, ...)                                   \
+    template <class S>                                                                    \
+    auto Part<S>::function arguments const->Result {                                      \
+        return Part##Laws<S>::visit(*this, [&](const auto& law) { return __VA_ARGS__; }); \
+    }
+/// The same of a function that returns a state or an output.
+#define SW_PACK(Part, Result, function, arguments, ...) SW_CALL(Part, Result, function, arguments, pack_slots<Result>(__VA_ARGS__))
+#define SW_READ(Part)                             \
+    template <class S>                            \
+    void Part<S>::read(kernel::Reader<S>& from) { \
+        Part##Laws<S>::read(*this, from);         \
+    }
+#define SW_STATE(Part)                                                                          \
+    template <class S>                                                                          \
+    void Part<S>::places(Places& found) const {                                                 \
+        Part##Laws<S>::visit(*this, [&](const auto& law) { add_state_places<S>(law, found); }); \
+    }                                                                                           \
+    SW_PACK(Part, State, initial_state, (), strainwave::initial_state(law))
+#define SW_OUTPUT_PLACES(Part)                                                                                              \
+    template <class S>                                                                                                      \
+    void Part<S>::output_places(Places& found) const {                                                                      \
+        Part##Laws<S>::visit(*this, [&]<class Law>(const Law& law) { add_places<S>(law, typename Law::Output{}, found); }); \
+    }
+
 #define SW_GENERAL(Name)          \
     template struct Name<double>; \
     template struct Name<Slope>;

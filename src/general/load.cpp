@@ -18,18 +18,10 @@ void Load<S>::read(kernel::Reader<S>& from) {
         brakes = load::can_brake<Law>;
     });
 }
-template <class S>
-S Load<S>::load_torque(const S& angle, const S& speed, const S& input) const {
-    return LoadLaws<S>::visit(*this, [&](const auto& law) { return strainwave::load_torque<S>(law, angle, speed, input); });
-}
-template <class S>
-S Load<S>::steepest() const {
-    return LoadLaws<S>::visit(*this, [](const auto& law) { return load_stiffness<S>(law); });
-}
-template <class S>
-Braking<S> Load<S>::braking(const S& input) const {
-    return LoadLaws<S>::visit(*this, [&](const auto& law) { return strainwave::braking<S>(law, input); });
-}
+SW_CALL(Load, S, load_torque, (const S& angle, const S& speed, const S& input),
+        strainwave::load_torque<S>(law, angle, speed, input))
+SW_CALL(Load, S, steepest, (), load_stiffness<S>(law))
+SW_CALL(Load, Braking<S>, braking, (const S& input), strainwave::braking<S>(law, input))
 
 SW_GENERAL(Load)
 

@@ -25,29 +25,11 @@ struct Around<Outer<S, Law>, SensorWithin> {
     using type = Outer<S, SensorOf<S, before>>;
 };
 
-template <SensorList list>
-struct LawsOf;
-template <>
-struct LawsOf<plain_sensor> {
-    using type = sensor::Plain;
-};
-template <>
-struct LawsOf<late_sensor> {
-    using type = sensor::Late;
-};
-template <>
-struct LawsOf<loud_sensor> {
-    using type = sensor::Loud;
-};
-template <>
-struct LawsOf<any_sensor> {
-    using type = sensor::Models;
-};
-
 }  // namespace detail
 
+using SensorLists = std::tuple<sensor::Plain, sensor::Late, sensor::Loud, sensor::Models>;  // as SensorList names them
 template <class S, SensorList list>
-using SensorLaws = Laws<S, typename detail::LawsOf<list>::type, SensorWithin>;
+using SensorLaws = Laws<S, std::tuple_element_t<list, SensorLists>, SensorWithin>;
 
 template <class S, SensorList list>
 void SensorOf<S, list>::read(kernel::Reader<S>& from) {

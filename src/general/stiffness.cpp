@@ -9,34 +9,13 @@ namespace strainwave::general {
 template <class S>
 using StiffnessLaws = Laws<S, stiffness::Models, Stiffness<S>>;
 
-template <class S>
-void Stiffness<S>::read(kernel::Reader<S>& from) {
-    StiffnessLaws<S>::read(*this, from);
-}
-template <class S>
-S Stiffness<S>::torque(const S& twist) const {
-    return StiffnessLaws<S>::visit(*this, [&](const auto& law) { return law.torque(twist); });
-}
-template <class S>
-S Stiffness<S>::twist(const S& torque) const {
-    return StiffnessLaws<S>::visit(*this, [&](const auto& law) { return law.twist(torque); });
-}
-template <class S>
-S Stiffness<S>::tangent(const S& twist) const {
-    return StiffnessLaws<S>::visit(*this, [&](const auto& law) { return law.tangent(twist); });
-}
-template <class S>
-S Stiffness<S>::energy(const S& twist) const {
-    return StiffnessLaws<S>::visit(*this, [&](const auto& law) { return law.energy(twist); });
-}
-template <class S>
-bool Stiffness<S>::is_bounded() const {
-    return StiffnessLaws<S>::visit(*this, [](const auto& law) { return strainwave::bounded<S>(law); });
-}
-template <class S>
-Domain<S> Stiffness<S>::domain(const S& twist) const {
-    return StiffnessLaws<S>::visit(*this, [&](const auto& law) { return strainwave::domain<S>(law, twist); });
-}
+SW_READ(Stiffness)
+SW_CALL(Stiffness, S, torque, (const S& twist), law.torque(twist))
+SW_CALL(Stiffness, S, twist, (const S& torque), law.twist(torque))
+SW_CALL(Stiffness, S, tangent, (const S& twist), law.tangent(twist))
+SW_CALL(Stiffness, S, energy, (const S& twist), law.energy(twist))
+SW_CALL(Stiffness, bool, is_bounded, (), strainwave::bounded<S>(law))
+SW_CALL(Stiffness, Domain<S>, domain, (const S& twist), strainwave::domain<S>(law, twist))
 
 SW_GENERAL(Stiffness)
 

@@ -23,13 +23,13 @@ initial::Known<S> in_scalars(const initial::Known<double>& known) {
 /// A run that gives the derivatives by the parameters number `first` and following of `count`.
 template <int n, class Drive>
 Outcome differentiate_by(const Drive& drive, const Beginning& beginning, const Schedule& schedule, std::size_t first,
-                         std::size_t count, const Rows& rows, double* slopes, const Progress& progress) {
+                         std::size_t count, const Rows& rows, double* derivatives, const Progress& progress) {
     using S = Dual<n>;
     const std::size_t last = std::min(count, first + n);
     const auto write_row = [&](std::size_t r, const S* held, std::size_t gathered, std::size_t from) {
         for (std::size_t k = 0; k < gathered; ++k) rows.out[r * rows.samples + from + k] = held[k].value;
         for (std::size_t p = first; p < last; ++p) {
-            double* const row = slopes + (p * rows.count + r) * rows.samples + from;
+            double* const row = derivatives + (p * rows.count + r) * rows.samples + from;
             for (std::size_t k = 0; k < gathered; ++k) row[k] = held[k].slope[p - first];
         }
     };

@@ -42,20 +42,20 @@ struct Entries {
     }
     template <int n>
     static Outcome differentiate(const Set& set, const Beginning& beginning, const Schedule& schedule, const int* parameters,
-                                 std::size_t count, const Rows& rows, double* slopes, const Progress& progress) {
+                                 std::size_t count, const Rows& rows, double* derivatives, const Progress& progress) {
         Buffer<Dual<n>> numbers(std::size_t(set.count));
         Outcome outcome;
         for (std::size_t first = 0; outcome.ending == Ending::done && (first == 0 || first < count); first += n) {
             seed(set, parameters, count, first, numbers.data());
             outcome = Drives::with(set, static_cast<const Dual<n>*>(numbers.data()), [&](const auto& drive) {
-                return differentiate_by<n>(drive, beginning, schedule, first, count, rows, slopes, progress);
+                return differentiate_by<n>(drive, beginning, schedule, first, count, rows, derivatives, progress);
             });
         }
         return outcome;
     }
     template <int n>
     static void inverse_dynamics(const Set& set, const double* motion, const double* inputs, std::size_t instants,
-                                 const int* parameters, std::size_t count, double* torque, double* slopes) {
+                                 const int* parameters, std::size_t count, double* torque, double* derivatives) {
         if (count == 0)
             Drives::with(set, set.numbers, [&](const auto& drive) {
                 needed_torques<double>(drive, motion, inputs, instants, [&](std::size_t i, double needed) { torque[i] = needed; });
@@ -67,7 +67,8 @@ struct Entries {
             Drives::with(set, static_cast<const Dual<n>*>(numbers.data()), [&](const auto& drive) {
                 needed_torques<Dual<n>>(drive, motion, inputs, instants, [&](std::size_t i, const Dual<n>& needed) {
                     torque[i] = needed.value;
-                    for (std::size_t p = first; p < first + n && p < count; ++p) slopes[p * instants + i] = needed.slope[p - first];
+                    for (std::size_t p = first; p < first + n && p < count; ++p)
+                        derivatives[p * instants + i] = needed.slope[p - first];
                 });
                 return Outcome{};
             });

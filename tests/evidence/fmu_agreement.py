@@ -16,8 +16,8 @@ import fmpy
 import numpy as np
 import strainwave as sw
 from numpy.typing import NDArray
-from strainwave.export.fmu import comparison
-from strainwave.export.fmu.variables import recorded, variables
+from strainwave.export.fmu import build as comparison
+from strainwave.export.fmu.source import recorded, variables
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 
 from tests.support.reference_drive import five_drives

@@ -28,7 +28,7 @@ COMPARED = ("torque", "load_torque", "twist", "input_angle", "input_speed", "cur
 
 def prepare(folder: Path) -> None:
     """Write each drive in each precision: package, joint, and outputs of native code."""
-    from strainwave.export.newton import source
+    from strainwave.export.newton import build
     from strainwave.native.static_type import SCALARS
 
     from tests import newton_agreement as agreement
@@ -38,7 +38,7 @@ def prepare(folder: Path) -> None:
             target = folder / f"{short}_{scalar}"
             target.mkdir(parents=True, exist_ok=True)
             follower, _ = agreement.follower(agreement.drives()[name], scalar, target)
-            (target / "drive.ptx").write_text(source.ptx((target / "drive.hpp").read_text()))
+            (target / "drive.ptx").write_text(build.ptx((target / "drive.hpp").read_text()))
             outputs = follower.by_compiler()
             joint = follower.joint[:COMPARED_STEPS]
             wanted = {key: values[:COMPARED_STEPS].tolist() for key, values in outputs.items() if key in COMPARED}

@@ -122,11 +122,27 @@ def test_not_a_number_is_refused(model: type, field: Field) -> None:
 
 
 @each(("model", "field"), EVERY_NUMBER)
-@each("value", [None, True, "1", 1j, object, np.complex128(1j), np.ma.masked, np.array(1j), np.array(True)])
+@each("value", [None, True, 1j, object, np.complex128(1j), np.ma.masked, np.array(1j), np.array(True)])
 def test_what_is_no_number_is_refused(model: type, field: Field, value: object) -> None:
     given = [value] if field["kind"] == "sequence" else value
     with pytest.raises(TypeError, match=rf"^{model.name}\.{field['name']} must be a number, not "):
         model(**(usual(model) | {field["name"]: given}))
+
+
+@each(("model", "field"), EVERY_NUMBER)
+def test_a_text_with_a_unit_is_the_number_and_is_refused_without(model: type, field: Field) -> None:
+    name, unit = field["name"], field["unit"]
+    made = model(**usual(model))
+    value = getattr(made, name)
+    if unit in ("", "1"):
+        assert re.search(rf"{name} must be a (whole )?number, not '1 rad'$", refusal(model, field, "1 rad"))
+        return
+    text = [f"{each!r} {unit}" for each in value] if field["kind"] == "sequence" else f"{value!r} {unit}"
+    assert model(**(usual(model) | {name: text})) == made
+    assert refusal(model, field, "1").endswith(
+        f'{name}{"[0]" * (field["kind"] == "sequence")} = "1" has no unit; write it as "1 {unit}"'
+    )
+    assert refusal(model, field, "1 kg.s").endswith(f'cannot convert "kg.s" to "{unit}"; write it as "1.2 {unit}"')
 
 
 @each(("model", "field"), EVERY_CHOICE)

@@ -1,4 +1,4 @@
-"""The readings of document P's Table 2 have its line and name what they contradict; experiments run with each."""
+"""The readings of the article's Table 2 have its line and name what they contradict; experiments run with each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from strainwave.demo import PUBLISHED
 
 @pytest.mark.whole_path("papers")
 def test_the_readings_of_table_2_have_its_line_and_say_what_they_exclude() -> None:
-    """Numbers of errata E-P6 and E-P7: dry friction 0.0126 or 0.0720 + 0.0126 N.m, slope 0.0308 or 3.08e-4 N.m.s/rad."""
+    """Numbers of the page of errata: dry friction 0.0126 or 0.0720 + 0.0126 N.m, slope 0.0308 or 3.08e-4 N.m.s/rad."""
     total, part, at_output = readings()
     assert (total.part, part.part, at_output.part) == (False, True, True)
     for reading in (total, part):
@@ -53,5 +53,5 @@ def test_the_experiments_run_with_each_reading() -> None:
         error = run["output_angle"] - run["command"]
         assert figures_of(run)[:2] == pytest.approx((np.sqrt(np.mean(error**2)), np.abs(error).max()))
         (head,) = (line for line in lines if line.startswith(f"\n| {name} |"))
-        assert head.splitlines()[1].endswith("document P, Table 4 |")
+        assert head.splitlines()[1].endswith("article, Table 4 |")
     assert "| root mean square error [rad] | 0.01041 | 0.01091 | 0.009068 | 0.009019 | 0.0021 |" in lines

@@ -1,4 +1,4 @@
-"""The study of document A's misalignment against closed forms, the numbers of its geometry, and laws."""
+"""The study of the actuator paper's misalignment against closed forms, the numbers of its geometry, and laws."""
 
 from __future__ import annotations
 

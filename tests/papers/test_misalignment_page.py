@@ -1,4 +1,4 @@
-"""The page of the study of document A, the lines for a terminal, and the script that writes both."""
+"""The page of the study of the actuator paper, the lines for a terminal, and the script that writes both."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_every_claim_has_a_verdict_and_a_number(found: MisalignmentStudy, text: 
     for claim in answers:
         assert claim.verdict in (CONFIRMED, IN_PART, CORRECTED)
         assert re.search(r"\d", claim.answer), claim.words
-    _, *rows = tables(section(text, "Document A's claims"))[0]
+    _, *rows = tables(section(text, "The paper's claims"))[0]
     assert rows == [list(claim) for claim in answers]
 
 

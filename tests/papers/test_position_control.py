@@ -1,4 +1,4 @@
-"""The study of document P's experiments against closed forms, independent integrations and numbers by hand."""
+"""The position control article's experiments against closed forms, independent integrations and numbers by hand."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 pytestmark = pytest.mark.slow("papers")  # an article's study runs for seconds
 
-# Document P, Tables 1 and 3, r = 1/100
+# Position control article, Tables 1 and 3, r = 1/100
 S1, S2, S3 = 1.5738e-6, -3.7901e-4, 0.0720
 MOTOR_INERTIA, LOAD_INERTIA, RATIO = 0.0012, 0.0050, 100.0
 TORQUE_CONSTANT, BACK_EMF, RESISTANCE, STIFFNESS = 0.05, 0.05, 2.0, 150.0
@@ -104,7 +104,7 @@ def test_the_commands_are_those_of_document_p(found: PositionControl) -> None:
 
 
 def test_amplitudes_are_within_the_spread_that_table_4_allows() -> None:
-    """E-P13: the standard deviation is at most rmse / sqrt(1 - correlation^2)."""
+    """The standard deviation is at most rmse / sqrt(1 - correlation^2)."""
     published = {"step": (0.0021, 0.0050, 0.995), "sine": (0.0018, 0.0042, 0.997), "pulse-train": (0.0015, 0.0038, 0.998)}
     assert published == study.TABLE_4
     for name, (_, command) in study.commands().items():

@@ -1,4 +1,4 @@
-"""The page of the study of document P's experiments, the lines for a terminal, and the script that writes both."""
+"""The page of the position control article's experiments, the lines for a terminal, and the script that writes both."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def test_strokes_are_listed_with_their_shares(found: PositionControl, text: str)
 
 
 def test_table_4_is_not_claimed_and_only_resolutions_stand_beside_it(found: PositionControl, text: str) -> None:
-    part = section(text, "Document P's Table 4")
+    part = section(text, "The article's Table 4")
     assert "Table 4 is not reproduced" in part
     _, *rows = tables(part)[0]
     for row, experiment, published in zip(rows, found.experiments, (2.1, 1.8, 1.5), strict=True):

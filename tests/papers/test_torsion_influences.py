@@ -1,4 +1,4 @@
-"""Document T's Table 3: sweeps against closed forms and the printed catalogue, and what is said of each entry."""
+"""The torsion article's Table 3: sweeps against closed forms and the printed catalogue, and what is said of each entry."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def test_steel_and_a_joint_stand_in_where_the_gear_knows_nothing(found: Influenc
     assert found.rates.friction == pytest.approx(0.0234, rel=0.01)
 
 
-def test_document_t_gear_loses_nothing_in_small_loops_and_no_more_beyond_its_stops(found: Influence) -> None:
+def test_the_gear_of_the_article_loses_nothing_in_small_loops_and_no_more_beyond_its_stops(found: Influence) -> None:
     """The branches give way once the soft twists at both ends, (T - T0)/H, add up to w; the area ends at that of row 0."""
     sweep = found.amplitude[SPECIMEN]
     rising, falling = (stiff * soft / (stiff - soft) for stiff, soft in ((4.51, 0.30), (4.85, 0.31)))
@@ -125,7 +125,7 @@ def test_the_torque_without_loss_is_where_the_first_element_slips(found: Influen
         each.answer for each in claims.entries(found) if (each.parameter, each.regime) == (claims.TORQUE, claims.HYSTERESIS)
     )
     assert answer.startswith("Nothing is lost up to 2.104 N·m; the area grows with the power 0.86")
-    assert "document T’s gear loses nothing up to 0.1738 N·m" in answer
+    assert "the article’s gear loses nothing up to 0.1738 N·m" in answer
 
 
 def test_a_gear_that_never_loses_or_always_has_the_ends_as_its_threshold() -> None:
@@ -278,7 +278,7 @@ def test_the_script_writes_a_page_and_the_sweeps(
     written = {path.name for path in (tmp_path / "new").iterdir() if path.suffix != ".svg"}
     assert written == {
         "page.md",
-        *(f"{name}.csv" for name in ("modulus", "preload", "temperature", "torque-level", "torque-level-document-t")),
+        *(f"{name}.csv" for name in ("modulus", "preload", "temperature", "torque-level", "torque-level-article")),
     }
     assert "8 confirmed, 3 confirmed in part, 2 contradicted, 3 undecidable" in capsys.readouterr().out
     sweep = sw.Recording.read(tmp_path / "new" / "torque-level.csv")
@@ -287,6 +287,6 @@ def test_the_script_writes_a_page_and_the_sweeps(
 
 def test_the_tables_hold_the_sweeps(found: Influence) -> None:
     held = tables(found)
-    assert list(held) == ["torque-level", "torque-level-document-t", "modulus", "temperature", "preload"]
+    assert list(held) == ["torque-level", "torque-level-article", "modulus", "temperature", "preload"]
     assert held["torque-level"].unit("area") == "J"
     assert held["preload"]["preload"].tolist() == [0.5, 0.7, 0.85, 1.0, 1.15, 1.3, 1.5, 2.0]

@@ -333,3 +333,9 @@ def test_an_import_needs_neither_numpy_nor_pandas_nor_matplotlib() -> None:
     code = f"import strainwave, sys; repr(strainwave.Gear()); print({heavy} & sys.modules.keys())"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
+
+
+def test_a_drive_names_the_motor_that_it_assumes() -> None:
+    assert repr(sw.Drive()) == "<Drive: ratio -100, motor DC by default>"
+    assert "motor DC by default" in str(sw.Drive()).splitlines()[0]
+    assert repr(sw.Drive(motor=sw.motor.DC(torque_constant="75 mN.m/A"))) == "<Drive: ratio -100, motor DC>"

@@ -13,7 +13,7 @@ struct LostMotionMap {
     S reach{1e-3};
 
     static constexpr auto name = "lost_motion_map";
-    static constexpr auto source = "document T, which asks for maps of compensation; between the two branches: Dahl1968";
+    static constexpr auto source = SW_TORSION_ARTICLE ", which asks for maps of compensation; between the two branches: Dahl1968";
     static constexpr auto doc = R"(
         Lead of the input by a table of measured lost motion over the output angle, for each sense of motion.
 

@@ -21,7 +21,8 @@ struct FeedbackLinearisation {
     static constexpr auto name = "feedback_linearisation";
     static constexpr auto command_unit = "rad";
     static constexpr auto source =
-        "Spong1987, section 3, with the kinematic error and its reaction; document P, which asks for feedback linearisation";
+        "Spong1987, section 3, with the kinematic error and its reaction; feedback linearisation is asked for "
+        "by " SW_POSITION_ARTICLE;
     static constexpr auto doc = R"(
         Position controller of a flexible joint: the output obeys a linear equation of fourth order.
 

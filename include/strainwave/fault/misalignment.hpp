@@ -27,8 +27,9 @@ struct Misalignment {
     static constexpr auto effect = "kinematic error at the output, and its reaction on the input";
     static constexpr auto signal =
         "orders 1, 2, 4 of the input in output position, and in the motor current in proportion to the load";
-    static constexpr auto source =
-        "document A, section Kinematic error, worked out (erratum E-A4); the numbers at severity 1, and `combine`, are assumed";
+    static constexpr auto source = SW_ACTUATOR_PAPER
+        ", section Kinematic error, worked out, with the factor and the sign of the flank; the numbers at severity 1, and "
+        "`combine`, are assumed";
     static constexpr auto doc = R"(
         Eccentricity and tilt of input shaft and wave generator against the circular spline.
 

@@ -10,7 +10,7 @@ struct Coulomb {
     S viscous{0.0};
 
     static constexpr auto name = "coulomb";
-    static constexpr auto source = "document P, simplified friction model (static + Coulomb + viscous); Coulomb1785";
+    static constexpr auto source = SW_POSITION_ARTICLE ", simplified friction model (static + Coulomb + viscous); Coulomb1785";
     static constexpr auto doc = R"(
         Coulomb and viscous friction with a breakaway torque, set-valued at rest.
 

@@ -20,7 +20,7 @@ struct Cyclic {
     Sequence<S, capacity> detent_phase{};
 
     static constexpr auto name = "cyclic";
-    static constexpr auto source = "document R, section 2, cyclic part of the friction torque; erratum E-R7";
+    static constexpr auto source = SW_REVIEW ", section 2, cyclic part of the friction torque, with the sign of the speed";
     static constexpr auto doc = R"(
         Friction that varies with the angle, in harmonics of one turn.
 
@@ -36,7 +36,7 @@ struct Cyclic {
         same sign in both directions of motion and takes no energy over a turn. At rest it adds to the torque that drives the
         place. Valid while it is smaller than the dry friction, as that of a gear is: a larger one would turn the place by itself.
 
-        Document R prints (A + B v) f(theta), which drives a reversed motion. It must read (A sgn v + B v) f(theta) (E-R7).
+        The review prints (A + B v) f(theta), which drives a reversed motion. It must read (A sgn v + B v) f(theta).
         With law a Coulomb friction of coulomb = A and viscous = B this is that term.
 
         >>> from strainwave.friction import Coulomb, Cyclic

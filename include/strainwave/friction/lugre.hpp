@@ -15,7 +15,7 @@ struct LuGre {
     S damping_fading{0.0};
 
     static constexpr auto name = "lugre";
-    static constexpr auto source = "CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: document R";
+    static constexpr auto source = "CanudasDeWit1995, eqs. (1)-(4); passivity: BarabanovOrtega2000; fading damping: " SW_REVIEW;
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
         LuGre friction of an elastic bristle: presliding, breakaway, Stribeck fall and viscous rise.

@@ -26,7 +26,7 @@ struct PositionDependent {
     Outside outside{Outside::refuse};
 
     static constexpr auto name = "position_dependent";
-    static constexpr auto source = "document P, friction model of the motor side; errata E-P3, E-P4, E-P5, E-P8, E-P9";
+    static constexpr auto source = SW_POSITION_ARTICLE ", friction model of the motor side, corrected as the text states";
     static constexpr bool odd = true;
     static constexpr auto doc = R"(
         Coulomb friction that depends on the angle, by a parabola and by harmonics of one turn, set-valued at rest.
@@ -39,17 +39,17 @@ struct PositionDependent {
 
         with q the angle and v the speed of the place it acts on, s_1 = quadratic, s_2 = linear, s_3 = constant, a_k = cosine and
         b_k = sine, by their place k = 1, 2 ..., kappa = static_ratio, epsilon = speed_factor, v_c = reference_speed (at which
-        f_aver was measured), b = viscous. A level below zero counts as zero. Document P prints no a_k and b_k; its other numbers
+        f_aver was measured), b = viscous. A level below zero counts as zero. The article prints no a_k and b_k; its other numbers
         are those of the example, all SI.
 
-        Valid for q from domain_start to domain_end. A parabola has no bound: that of document P has its minimum,
-        0.0491812523669 N.m, at 120.412377685 rad, and its first value again at twice that angle (E-P8). ``outside`` sets
+        Valid for q from domain_start to domain_end. A parabola has no bound: that of the article has its minimum,
+        0.0491812523669 N.m, at 120.412377685 rad, and its first value again at twice that angle. ``outside`` sets
         f_aver beyond the domain: ``"clamp"`` keeps the value of the nearer end, ``"periodic"`` repeats the domain,
         ``"refuse"`` is an error. f_peri is periodic in any case.
 
-        Document P prints the sliding branch with the wrong sign and for v > 0 only (E-P3); its factor 0.0004 needs the unit
-        s/rad (E-P4), and its v_c is the reference speed, not a threshold (E-P5). A constant a_0 / 2 is not identifiable
-        together with s_3 and is left out (E-P9).
+        The article prints the sliding branch with the wrong sign and for v > 0 only; its factor 0.0004 needs the unit
+        s/rad, and its v_c is the reference speed, not a threshold. A constant a_0 / 2 is not identifiable
+        together with s_3 and is left out.
 
         >>> from strainwave.friction import PositionDependent
         >>> law = PositionDependent(quadratic=1.5738e-6, linear=-3.7901e-4, constant=0.0720, static_ratio=1.0388,

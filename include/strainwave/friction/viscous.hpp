@@ -8,7 +8,7 @@ struct Viscous {
     S viscous{0.0};
 
     static constexpr auto name = "viscous";
-    static constexpr auto source = "Newton's law of viscosity; document P, b_m and b_l of Table 3";
+    static constexpr auto source = "Newton's law of viscosity; " SW_POSITION_ARTICLE ", b_m and b_l of Table 3";
     static constexpr auto doc = R"(
         Viscous friction, proportional to the speed.
 

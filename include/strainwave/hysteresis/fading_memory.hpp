@@ -51,7 +51,7 @@ struct FadingMemory {
     Sequence<S, capacity> forgetting{};
 
     static constexpr auto name = "fading_memory";
-    static constexpr auto source = "document R, section 4a; Dahl1968 (order 1); erratum E-R10";
+    static constexpr auto source = SW_REVIEW ", section 4a; Dahl1968 (order 1)";
     static constexpr auto doc = R"(
         Hysteresis with a memory that fades exponentially with the twist travelled.
 
@@ -62,7 +62,7 @@ struct FadingMemory {
         over any monotone step: with s the sense of motion, T_j approaches s A_j / alpha_j as exp(-alpha_j |Delta delta|). The
         elastic energy is sum T_j^2 / (2 A_j); alpha_j T_j^2 / A_j is lost per twist travelled, in either sense.
 
-        Rate-independent: document R calls it rate-dependent (E-R10). One branch is Dahl's model of order 1, and BoucWen with
+        Rate-independent: the review calls it rate-dependent. One branch is Dahl's model of order 1, and BoucWen with
         sharpness 1 and shape 1. Its minor loops do not close, unlike those of a gear: prefer MaxwellSlip if small reversals
         matter.
 

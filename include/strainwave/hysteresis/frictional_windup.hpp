@@ -11,7 +11,7 @@ struct FrictionalWindup {
     S friction{1.0};
 
     static constexpr auto name = "frictional_windup";
-    static constexpr auto source = "document R, section 4c, with T_fr; errata E-R13, E-R14; play: Visintin1994";
+    static constexpr auto source = SW_REVIEW ", section 4c, with T_fr, corrected as the text states; play: Visintin1994";
     static constexpr auto doc = R"(
         Spring of flexspline and wave generator in series, with dry friction at the wind-up of the wave generator.
 
@@ -24,12 +24,12 @@ struct FrictionalWindup {
         cycle loses the integral of F |dx|, which is 4 F x(T_m - F) between +-T_m; the twist x(F) remains without torque. Exact
         over any monotone step; minor loops close. It begins without twist and torque.
 
-        Document R has the friction at the input's scale, or divides it by N (E-R13), and makes it a function of the input
-        speed. A torsion test, whose input is held, would then show no hysteresis (E-R14).
+        The review has the friction at the input's scale, or divides it by N, and makes it a function of the input
+        speed. A torsion test, whose input is held, would then show no hysteresis.
 
         It is a complete spring: the ``stiffness`` of a gear acts in parallel to it (use Linear with a negligible stiffness if
         there is no other spring). A gear refuses springs whose reduction is not its ratio. If both springs harden, there is no
-        torque beyond a certain twist (E-R16). The law is valid within the limits of MultiCompliance, and keeps its greatest
+        torque beyond a certain twist. The law is valid within the limits of MultiCompliance, and keeps its greatest
         torque beyond them.
 
         >>> from strainwave.hysteresis import FrictionalWindup
@@ -51,7 +51,7 @@ struct FrictionalWindup {
         visit(SW_REQUIRED(m, friction, "N.m", "Friction F against the wind-up, at the output's scale", 0));
     }
 
-    /// Range of its springs: no torque beyond a finite twist (E-R16).
+    /// Range of its springs: no torque beyond a finite twist.
     constexpr Domain<S> domain(const S& twist) const { return springs.domain(twist); }
 
     struct State {

@@ -13,7 +13,8 @@ struct MaxwellSlip {
     Sequence<S, capacity> breakaway{};
 
     static constexpr auto name = "maxwell_slip";
-    static constexpr auto source = "Iwan1966; LampaertAlBenderSwevers2003, eq. (9); document R, section 4b; erratum E-R11";
+    static constexpr auto source = "Iwan1966; LampaertAlBenderSwevers2003, eq. (9); " SW_REVIEW
+                                   ", section 4b, with a capture position that is dragged along in slip";
     static constexpr auto doc = R"(
         Maxwell-slip hysteresis of parallel springs that slip at their own torque: non-local memory.
 
@@ -24,7 +25,7 @@ struct MaxwellSlip {
         and congruency; symmetric.
 
         The rule printed in review articles, with a capture position frozen at the last sticking, makes the torque jump at a
-        reversal (E-R11).
+        reversal.
 
         >>> from strainwave.hysteresis import MaxwellSlip
         >>> gear = MaxwellSlip(stiffness=[1000, 600, 300, 100], breakaway=[0.5, 0.9, 0.9, 0.6])

@@ -15,7 +15,7 @@ struct Regimes {
 
     static constexpr auto name = "regimes";
     static constexpr auto source =
-        "document T, Table 2, row 0 degrees (at the input); erratum E-T4; generalised play: Visintin1994";
+        SW_TORSION_ARTICLE ", Table 2, row 0 degrees (at the input), read as a closed loop; generalised play: Visintin1994";
     static constexpr auto doc = R"(
         Spring with memory: one stiffness for each of the four regimes of a torsion test.
 
@@ -28,7 +28,7 @@ struct Regimes {
         loop has its greatest width w at zero torque; the work on s is lost. Exact over any monotone step; minor loops close,
         no cycle creeps. The virgin state is s = 0.
 
-        The loop does not close if the stiffnesses of the table are secants from 0 to +-0.36 N.m (E-T4). It closes if they are
+        The loop does not close if the stiffnesses of the table are secants from 0 to +-0.36 N.m. It closes if they are
         slopes between the stops, of a loop 50.5 degrees wide. They were measured at the input, and are those of the example.
         In a gear the law acts on the output: with a ratio N, multiply torques by N and divide twists by N.
 

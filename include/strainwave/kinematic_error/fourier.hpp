@@ -13,7 +13,7 @@ struct Fourier {
     Sequence<S, capacity> phase{};
 
     static constexpr auto name = "fourier";
-    static constexpr auto source = "document R, eq. (1a); sign convention: theta_error = theta_in / i - theta_out";
+    static constexpr auto source = SW_REVIEW ", eq. (1a); sign convention: theta_error = theta_in / i - theta_out";
     static constexpr auto doc = R"(
         Kinematic error as a sum of harmonics of the wave generator's rotation.
 

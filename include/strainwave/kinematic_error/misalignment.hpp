@@ -59,8 +59,8 @@ struct Misalignment {
     Combine combine{Combine::single};
 
     static constexpr auto name = "misalignment";
-    static constexpr auto source =
-        "document A, section Kinematic error, worked out: the document prints no equation; erratum E-A4; `combine` and the "
+    static constexpr auto source = SW_ACTUATOR_PAPER
+        ", section Kinematic error, worked out: the paper prints no equation; `combine` and the "
         "default values (teeth of module 0.25 mm, 200 and 202) are assumed";
     static constexpr auto doc = R"(
         Kinematic error of a wave generator that is eccentric and tilted in the circular spline.
@@ -96,9 +96,9 @@ struct Misalignment {
         harmonics in first order with ``max`` alone, which compares it with m: odd orders appear. If c_x exceeds m the lobes no
         longer change, and the error is that of ``single``.
 
-        Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. In eq. (2) document A takes e r_g
+        Leaves out clearance, tooth errors and the flexspline's elastic fit to the generator. In eq. (2) the paper takes e r_g
         for the radial displacement. The displacement acts through the flank, with the factor tan(alpha_t) / r_g, and against
-        the output (E-A4). Document A also leaves out h, without which no tilt acts in first order, and the combination of the
+        the output. The paper also leaves out h, without which no tilt acts in first order, and the combination of the
         two lobes. In a gear of stages, pitch radius and pressure angle must be those of its structure.
 
         >>> from strainwave.kinematic_error import Misalignment

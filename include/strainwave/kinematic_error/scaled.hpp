@@ -12,8 +12,8 @@ struct Scaled {
     S depth_sensitivity{0.0};
 
     static constexpr auto name = "scaled";
-    static constexpr auto source =
-        "document R, section 1b, which scales its random part so (E-R4): here the deterministic error, with a reaction that keeps "
+    static constexpr auto source = SW_REVIEW
+        ", section 1b, which scales its random part so: here the deterministic error, with a reaction that keeps "
         "the energy";
     static constexpr auto doc = R"(
         Kinematic error that decreases with load and with the insertion depth of the wave generator.

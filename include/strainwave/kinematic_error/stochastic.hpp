@@ -18,8 +18,8 @@ struct Stochastic {
     S depth_sensitivity{0.0};
 
     static constexpr auto name = "stochastic";
-    static constexpr auto source =
-        "document R, section on the kinematic error, which states directions only: the laws of load, speed and depth and the "
+    static constexpr auto source = SW_REVIEW
+        ", section on the kinematic error, which states directions only: the laws of load, speed and depth and the "
         "default band are assumed; spectral representation: ShinozukaDeodatis1991; random numbers: WichmannHill1982";
     static constexpr auto doc = R"(
         Random kinematic error in a band of orders: smooth, and the same for the same seed.
@@ -37,7 +37,7 @@ struct Stochastic {
 
         The review states that the stochastic part falls with load, rises with speed and falls with the insertion depth,
         without equations: the forms are assumed, and all three are off by default. The stochastic part of the review also
-        contains the deterministic resonance of the elastic gear (E-R4), which is not part of this law. The spectrum is flat,
+        contains the deterministic resonance of the elastic gear, which is not part of this law. The spectrum is flat,
         the values are close to Gaussian. ``slope`` is the derivative by theta at constant a. Over few turns the root mean
         square differs from a: a record must span several times the inverse of a cell's width, in turns.
 

@@ -28,7 +28,9 @@ struct ToothErrors {
 
     static constexpr auto name = "tooth_errors";
     static constexpr auto source =
-        "the cause is named by document A, section Kinematic error, without an equation, and the order 2 z_c / z_f by document R; "
+        "the cause is named by " SW_ACTUATOR_PAPER
+        ", section Kinematic error, without an equation, and the order 2 z_c / z_f by " SW_REVIEW
+        "; "
         "derived here from the geometry; terms of ISO2013; random chart: Feller1951, ShinozukaDeodatis1991, "
         "WichmannHill1982; which teeth are engaged, and how stiff they are, is assumed";
     static constexpr auto doc = R"(

@@ -20,7 +20,7 @@ struct BrushlessDC {
     static constexpr auto name = "brushless_dc";
     static constexpr auto actuation = "voltage";
     static constexpr auto source =
-        "document A, section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours";
+        SW_ACTUATOR_PAPER ", section Electric Motor: a brushless DC motor, simplified; the limits of amplifier and supply are ours";
     static constexpr auto doc = R"(
         Brushless DC motor as an equivalent DC motor, with the limits of its amplifier.
 

@@ -19,7 +19,7 @@ struct DC {
 
     static constexpr auto name = "dc";
     static constexpr auto actuation = "voltage";
-    static constexpr auto source = "document P, armature equation u = R i + L di/dt + K_b omega";
+    static constexpr auto source = SW_POSITION_ARTICLE ", armature equation u = R i + L di/dt + K_b omega";
     static constexpr auto doc = R"(
         Armature-controlled DC motor.
 
@@ -28,7 +28,7 @@ struct DC {
 
         with u the voltage, omega the input speed, T the temperature of the winding, R_0 = resistance, L = inductance, K_m =
         torque_constant, K_b = back_emf, V_b = brush_drop, alpha = resistance_rise (0.00393 per kelvin for copper). With
-        inductance = 0 the current follows at once, as document P assumes: i = (u - K_b omega) / R. With a brush drop no
+        inductance = 0 the current follows at once, as the article assumes: i = (u - K_b omega) / R. With a brush drop no
         current flows while abs(u - K_b omega) does not exceed it. A brush drop needs inductance = 0. If K_b exceeds K_m the
         difference counts as a loss, as iron losses do, but only while the motor drives. A motor with K_b > K_m that brakes,
         and one with K_m > K_b that drives, gives more power than it takes. In SI units K_m = K_b of a motor without iron

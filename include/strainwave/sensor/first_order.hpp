@@ -8,7 +8,7 @@ struct FirstOrder {
     S time_constant{1e-3};
 
     static constexpr auto name = "first_order";
-    static constexpr auto source = "definition; document A takes speed sensors of first order";
+    static constexpr auto source = "definition; speed sensors of first order: " SW_ACTUATOR_PAPER;
     static constexpr auto doc = R"(
         Sensor with a lag of first order.
 

@@ -9,7 +9,7 @@ struct Gain {
     S offset{0.0};
 
     static constexpr auto name = "gain";
-    static constexpr auto source = "definition; document A takes current sensors of order zero";
+    static constexpr auto source = "definition; current sensors of order zero: " SW_ACTUATOR_PAPER;
     static constexpr auto doc = R"(
         Sensor with a gain and an offset, without lag.
 

@@ -9,7 +9,7 @@ struct SecondOrder {
     S damping_ratio{0.7};
 
     static constexpr auto name = "second_order";
-    static constexpr auto source = "definition; document A takes position sensors of second order";
+    static constexpr auto source = "definition; position sensors of second order: " SW_ACTUATOR_PAPER;
     static constexpr auto doc = R"(
         Sensor with the dynamics of a damped oscillator.
 

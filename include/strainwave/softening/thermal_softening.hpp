@@ -12,8 +12,8 @@ struct ThermalSoftening {
     S reference_temperature{room_temperature};
 
     static constexpr auto name = "thermal_softening";
-    static constexpr auto source =
-        "document R, section on temperature, which states the direction only: the exponential form is assumed, its rates are the "
+    static constexpr auto source = SW_REVIEW
+        ", section on temperature, which states the direction only: the exponential form is assumed, its rates are the "
         "user's";
     static constexpr auto doc = R"(
         Stiffness and hysteresis that fall exponentially with the temperature.

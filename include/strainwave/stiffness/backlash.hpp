@@ -15,7 +15,7 @@ struct Backlash {
     S clearance{0.0};
 
     static constexpr auto name = "backlash";
-    static constexpr auto source = "document A, kinematic error: \"a constant component, related to clearance\"";
+    static constexpr auto source = SW_ACTUATOR_PAPER ", kinematic error: \"a constant component, related to clearance\"";
     static constexpr auto doc = R"(
         Spring behind play: no torque within the clearance, the torque of the spring beyond it.
 

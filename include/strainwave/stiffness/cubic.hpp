@@ -10,7 +10,7 @@ struct Cubic {
     S a3{0.0};
 
     static constexpr auto name = "cubic";
-    static constexpr auto source = "document R, section 3, cubic polynomial; Tuttle1992";
+    static constexpr auto source = SW_REVIEW ", section 3, cubic polynomial; Tuttle1992";
     static constexpr auto doc = R"(
         Cubic spring: it stiffens smoothly under load.
 

@@ -9,7 +9,7 @@ struct Linear {
     S k{1e4};
 
     static constexpr auto name = "linear";
-    static constexpr auto source = "Hooke's law; document P, K_s";
+    static constexpr auto source = "Hooke's law; " SW_POSITION_ARTICLE ", K_s";
     static constexpr auto doc = R"(
         Linear spring: constant stiffness.
 

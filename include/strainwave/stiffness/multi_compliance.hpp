@@ -196,7 +196,7 @@ struct MultiCompliance {
     S reduction{100.0};
 
     static constexpr auto name = "multi_compliance";
-    static constexpr auto source = "document R, section 4c; erratum E-R14";
+    static constexpr auto source = SW_REVIEW ", section 4c, without its friction";
     static constexpr auto doc = R"(
         Spring of flexspline and wave generator in series, each with a bounded twist.
 
@@ -211,8 +211,8 @@ struct MultiCompliance {
         and well before the bound more steeply than any gear.
 
         In a compiled model torque rises up to max(1e6 / C_f, 40 N / C_w), at most 1e18 N.m, and stays there, from within 1e-6
-        of the bound on. The law is elastic: the friction torque that document R includes belongs to a law of friction or
-        hysteresis, which is passive (E-R14). A gear refuses a reduction that is not its own ratio.
+        of the bound on. The law is elastic: the friction torque that the review includes belongs to a law of friction or
+        hysteresis, which is passive. A gear refuses a reduction that is not its own ratio.
 
         >>> from strainwave.stiffness import MultiCompliance
         >>> spring = MultiCompliance(flexspline_stiffness=8000.0, flexspline_hardening=0.02, wave_generator_stiffness=2.0,

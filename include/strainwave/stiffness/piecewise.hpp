@@ -11,14 +11,14 @@ struct Piecewise {
     S knee{1e-3};
 
     static constexpr auto name = "piecewise";
-    static constexpr auto source = "document R, section 3, piecewise linear; erratum E-R9";
+    static constexpr auto source = SW_REVIEW ", section 3, piecewise linear";
     static constexpr auto doc = R"(
         Piecewise linear spring of two segments, stiffer beyond a twist, odd in the twist.
 
         .. math:: T = k_1 \delta + k_2 \operatorname{sgn}(\delta) \max(|\delta| - \delta_k, 0)
 
-        with delta the twist, k_1 = k1, k_2 = k2, delta_k = knee. Document R's k_2 is an increment: the slope
-        above the knee is k1 + k2 (E-R9), so to match a slope K there set k2 = K - k1. The slope jumps at the knee; at the knee
+        with delta the twist, k_1 = k1, k_2 = k2, delta_k = knee. The review's k_2 is an increment: the slope
+        above the knee is k1 + k2, so to match a slope K there set k2 = K - k1. The slope jumps at the knee; at the knee
         itself it is k1. Leaves out the soft centre and the hysteresis.
 
         >>> from strainwave.stiffness import Piecewise

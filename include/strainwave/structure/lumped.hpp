@@ -7,7 +7,7 @@ namespace strainwave::structure {
 template <class S>
 struct Lumped {
     static constexpr auto name = "lumped";
-    static constexpr auto source = "document R, sections 1-4";
+    static constexpr auto source = SW_REVIEW ", sections 1-4";
     static constexpr auto doc = R"(
         Lumped gear of one spring, without bodies that have their own motion.
 

@@ -27,8 +27,8 @@ struct Staged {
     SplineVariation circular_spline_variation{};
 
     static constexpr auto name = "staged";
-    static constexpr auto source =
-        "document A, eq. (1), with the relations that it leaves out, corrected (errata E-A1 to E-A6); the circular "
+    static constexpr auto source = SW_ACTUATOR_PAPER
+        ", eq. (1), with the two relations that it leaves out, corrected as the text states; the circular "
         "spline fixed, varying springs and the default values are assumed";
     static constexpr auto doc = R"(
         Gear of stages: wave generator, flexspline and circular spline have their own motion.
@@ -60,19 +60,19 @@ struct Staged {
         Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is
         part of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
-        Document A prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), with which the gear gives more power than it
-        takes (E-A2). It damps the mesh by a rate that is not that of its deformation (E-A3), gives the error the opposite sign
-        of its own eq. (2) (E-A4), leaves out the reaction of the error (E-A5), and counts three degrees of freedom where there
-        are four (E-A6). Its x_1 is linear in theta_WG: the equations leave out the cyclic deformation of the flexspline.
+        The paper prints the torque of F_b as F_b r_g sin(alpha_n) cos(alpha_n), with which the gear gives more power than it
+        takes. It damps the mesh by a rate that is not that of its deformation, gives the error the opposite sign
+        of its own eq. (2), leaves out the reaction of the error, and counts three degrees of freedom where there
+        are four. Its x_1 is linear in theta_WG: the equations leave out the cyclic deformation of the flexspline.
 
-        Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as in document A:
-        a turn of the held ring turns the output by the same angle, while the ratio of the teeth gives 1 percent more or less
-        (E-A12).
+        Friction of input and mesh acts on the motor shaft, as in a lumped gear. Both rings have one radius, as in the paper:
+        a turn of the held ring turns the output by the same angle, while the ratio of the teeth gives 1 percent more or less,
+        so that the three torques on the gear do not balance.
 
         With the circular spline fixed, x_1, x_2 and the forces have the sign of the output's motion, y_1 is the twist of the
         flexspline against the output shaft times r_g, and y_2 counts against the output's sense.
 
-        Outputs as in document A: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
+        Outputs as in the paper: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
         ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
         ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output.
 

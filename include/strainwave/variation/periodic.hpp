@@ -14,8 +14,8 @@ struct Periodic {
     Sequence<S, capacity> phase{};
 
     static constexpr auto name = "periodic";
-    static constexpr auto source =
-        "document R, which names the stiffness of the mesh among what varies with time; the form, and the reaction on the wave "
+    static constexpr auto source = SW_REVIEW
+        ", which names the stiffness of the mesh among what varies with time; the form, and the reaction on the wave "
         "generator, follow from the energy of the spring";
     static constexpr auto doc = R"(
         Stiffness that varies with the angle of the wave generator, in harmonics of its turn.

@@ -111,9 +111,11 @@ def _check_prescribed(drive: Drive, state: Array, inputs: Array) -> None:
 def constant_inputs(command: float, load_torque: float, temperature: float, command_rate: float = 0.0) -> Array:
     """The inputs in the order of the core, shape (6,), if they make sense."""
     inputs = {"command": command, "command_rate": command_rate, "load_torque": load_torque, "temperature": temperature}
-    numbers = [arguments.number(name, value) for name, value in inputs.items()]
+    units = {"load_torque": "N.m", "temperature": "K"}
+    command, command_rate, load_torque, temperature = [
+        arguments.number(*each, units.get(each[0], "")) for each in inputs.items()
+    ]
     check_temperature(temperature)
-    command, command_rate, load_torque, temperature = numbers
     return np.array([command, command_rate, load_torque, 0.0, temperature, 0.0])
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -65,7 +64,7 @@ def description(name: str) -> str:
     """Return the documentation of a model."""
     from inspect import cleandoc
 
-    return in_words(cleandoc(str(models()[name].__doc__)))
+    return cleandoc(str(models()[name].__doc__))
 
 
 def _named(kind: str, names: Any, part: str) -> list[str]:
@@ -82,30 +81,3 @@ def _named(kind: str, names: Any, part: str) -> list[str]:
         hint = f"near it are {near}" if near else f"`strainwave list {kind}` lists all"
         raise ValueError(f"none of the {kind} that come with the package has {quoted(part)} in its name; {hint}")
     return matching
-
-
-# ---- Words of documents ----------------------------------------------------------------------------------------------
-
-
-NAMES = {  # docs/validation/errata.md has their titles
-    "R": "review of dynamic models",
-    "P": "position control article",
-    "A": "flight actuator paper",
-    "T": "torsional stiffness article",
-}
-_ERRATA = re.compile(r"(?:errat(?:um|a) )?\bE-([RPAT])(\d+)((?:(?:, | and | to )E-\1\d+)*)")
-
-
-def in_words(text: str) -> str:
-    """Return a text with the names of documents and the numbers of their errata in words.
-
-    >>> in_words("Document R; errata E-P3, E-P4")
-    'the review of dynamic models; errata 3, 4 of the position control article'
-    """
-    text = _ERRATA.sub(_errata, text)
-    return re.sub(r"\b[Dd]ocument ([RPAT])\b", lambda found: f"the {NAMES[found[1]]}", text)
-
-
-def _errata(found: re.Match[str]) -> str:
-    others = re.sub(r"E-[RPAT]", "", found[3])
-    return f"{'errata' if others else 'erratum'} {found[2]}{others} of the {NAMES[found[1]]}"

@@ -14,13 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
-from strainwave.export.command_mode import Command, command_mode
 from strainwave.export.coupled import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
-from strainwave.export.coupled.comparison import COMPARED_SAMPLES
+from strainwave.export.coupled.drive import COMPARED_SAMPLES
 from strainwave.export.elements import max_torque_of
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.internal_step import internal_step
-from strainwave.export.names import checked_name
+from strainwave.export.host import Command, checked_name, command_mode, internal_step
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.native.static_type import in_words

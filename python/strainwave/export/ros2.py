@@ -8,8 +8,8 @@ from pathlib import Path
 from strainwave import Drive, Gear
 from strainwave.export.elements import GearElements, remark_on_rotor
 from strainwave.export.exported import Exported, Form, stating_origins
+from strainwave.export.host import checked_name
 from strainwave.export.joint_numbers import joint
-from strainwave.export.names import checked_name
 from strainwave.files.gear_set import GearSet, gear_set_of
 
 

@@ -8,12 +8,12 @@ import reprlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from math import hypot
+from math import hypot, isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 from strainwave import arguments
 from strainwave.files.described import parameters, parts
-from strainwave.files.units import check, check as check_unit, convert
+from strainwave.files.units import base_exponents, check, check as check_unit, convert
 from strainwave.messages import quoted, shortened
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Entry:
         check_line("source", self.source)
         for name in ("spread", "uncertainty"):
             if (number := getattr(self, name)) is not None:
-                arguments.number(name, number, brackets="[)", low=0.0)
+                arguments.bare_number(name, number, brackets="[)", low=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +84,7 @@ class Quantity(Entry):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_unit(self.unit)
-        arguments.number("value", self.value, self.unit)
+        arguments.bare_number("value", self.value, self.unit)
 
     def to(self, unit: str) -> Quantity:
         """Return the quantity in another unit.
@@ -141,20 +141,38 @@ def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
     if isinstance(given, Quantity):
         quantity = given
     elif isinstance(given, str):
-        quantity = _read(name, given, unit, source)
+        quantity = _read(name, given.strip().removeprefix("<").removeprefix("≤"), unit, source)
     else:
         quantity = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
-    try:
-        quantity.to(unit)
-    except ValueError as error:
-        raise ValueError(f"{name}: {error}") from None
+    _figure_in(name, quantity, unit)
     return quantity
+
+
+def number_of(name: str, text: str, unit: str) -> float:
+    """Return the number of a text with a unit, in `unit`; in SI units if that is empty, as it is for a command.
+
+    >>> number_of("torque_constant", "75 mN.m/A", "N.m/A"), round(number_of("amplitude", "90 deg", ""), 4)
+    (0.075, 1.5708)
+
+    Raises:
+        ValueError: as `quantity_of`
+    """
+    written = _read(name, text, unit or "deg", "argument")
+    base = ".".join(f"{symbol}{power}" for symbol, power in base_exponents(written.unit)[1].items())
+    return _figure_in(name, written, unit or base or "1").value
+
+
+def _figure_in(name: str, quantity: Quantity, unit: str) -> Quantity:
+    try:
+        return quantity.to(unit)
+    except ValueError as error:
+        raise ValueError(f'{name}: {error}; write it as "1.2 {unit}"') from None
 
 
 def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     if len(text) > MAX_FIGURE_LETTERS:
         raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_FIGURE_LETTERS}")
-    written = _WRITTEN_FIGURE.fullmatch(text.strip().removeprefix("<").removeprefix("≤").strip())
+    written = _WRITTEN_FIGURE.fullmatch(text.strip())
     if written is None:
         raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
     number = written["number"]
@@ -164,10 +182,13 @@ def _read(name: str, text: str, unit: str, source: str) -> Quantity:
     value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
     if not written["unit"] and unit != "1":
         raise ValueError(f'{name} = {quoted(text)} has no unit; write it as "{number} {unit}"')
+    if not isfinite(value):
+        raise ValueError(f"{name} = {quoted(text)} must be finite")
     try:
-        return Quantity(value=value, unit=check(written["unit"] or "1"), source=source)
+        standard = check(written["unit"] or "1")
     except ValueError as error:
-        raise ValueError(f"{name} = {quoted(text)}: {error}") from None
+        raise ValueError(f'{name} = {quoted(text)}: {error}; write it as "{number} {unit}"') from None
+    return Quantity(value=value, unit=standard, source=source)
 
 
 # ---- Forms -----------------------------------------------------------------------------------------------------------

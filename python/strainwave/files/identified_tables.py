@@ -124,11 +124,11 @@ class Validation:
         check_line("channel", self.channel)
         check_unit(self.unit)
         for name in ("error", "varies", "held_out", "held_out_varies"):
-            arguments.number(name, getattr(self, name), self.unit, brackets="[)", low=0.0)
-        arguments.number("zero", self.zero, self.unit)
-        arguments.number("delay", self.delay, "s")
+            arguments.bare_number(name, getattr(self, name), self.unit, brackets="[)", low=0.0)
+        arguments.bare_number("zero", self.zero, self.unit)
+        arguments.bare_number("delay", self.delay, "s")
         for name, share in self.shares.items():
-            arguments.number(f"share of {name}", share, "N.m")
+            arguments.bare_number(f"share of {name}", share, "N.m")
 
     @property
     def relative(self) -> float:

@@ -78,10 +78,9 @@ class Campbell(ComparedByFields, Pictured):
         Raises:
             TypeError, ValueError: an order or an eigenfrequency is no positive number
         """
-        for name, unit, values in (("orders", "1", orders), ("eigenfrequencies", "rad/s", eigenfrequencies)):
-            for each in values:
-                arguments.number(name, each, unit, brackets="()", low=0.0)
-        return campbell_figure(self, [float(each) for each in orders], [float(each) / tau for each in eigenfrequencies])
+        of_shaft = [arguments.number("orders", order, low=0.0) for order in orders]
+        frequencies = [arguments.number("eigenfrequencies", speed, "rad/s", low=0.0) / tau for speed in eigenfrequencies]
+        return campbell_figure(self, of_shaft, frequencies)
 
     def _headline(self) -> str:
         low, high = (typeset.quantity(float(end), "rad/s") for end in (self.speed[0], self.speed[-1]))

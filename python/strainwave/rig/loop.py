@@ -145,18 +145,18 @@ class Loop(ComparedByFields, Pictured):
 
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return a positive number of a test, from 1e-30 to 1e12, or refuse it."""
-    return arguments.number(name, value, unit, "[]", MIN_SIZE, MAX_SIZE)
+    return arguments.bare_number(name, value, unit, "[]", MIN_SIZE, MAX_SIZE)
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return a number of a test that is 0 or positive, or refuse it."""
-    given = arguments.number(name, value, unit, "[]", 0.0, MAX_SIZE)
+    given = arguments.bare_number(name, value, unit, "[]", 0.0, MAX_SIZE)
     return given if given == 0.0 else positive(name, given, unit)
 
 
 def signed(name: str, value: object, unit: str = "") -> float:
     """Return a number of a test of either sign, up to 1e12, or refuse it."""
-    return arguments.number(name, value, unit, "[]", -MAX_SIZE, MAX_SIZE)
+    return arguments.bare_number(name, value, unit, "[]", -MAX_SIZE, MAX_SIZE)
 
 
 def _series(name: str, values: Sequence[float] | Array, n: int) -> Array:

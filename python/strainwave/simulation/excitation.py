@@ -49,9 +49,9 @@ class Excitation:
         cls,
         drive: Drive,
         command: Scenario,
-        load_torque: Scenario | float = 0.0,
-        temperature: Scenario | float = ROOM_TEMPERATURE,
-        inputs: Mapping[str, Scenario | float] | None = None,
+        load_torque: Scenario | float | str = 0.0,
+        temperature: Scenario | float | str = ROOM_TEMPERATURE,
+        inputs: Mapping[str, Scenario | float | str] | None = None,
     ) -> Excitation:
         """Return the excitation for the arguments of a user; `inputs` has those that the parts of the drive take, by name."""
         if not isinstance(command, Scenario):
@@ -61,16 +61,20 @@ class Excitation:
         load = load_input(drive)
         if load != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
             raise ValueError(f"the load of this drive takes no load_torque, but {load}: give inputs={{{quoted(load)}: ...}}")
-        signals = {load: load_torque if load == "load_torque" else 0.0, "temperature": temperature}
+        given = {load: load_torque if load == "load_torque" else 0.0, "temperature": temperature}
         for name, signal in dict(inputs or {}).items():
-            signals[arguments.one_of("the name of an input", name, (load, "temperature"))] = signal
-        for name, signal in signals.items():
-            if not isinstance(signal, Scenario | Real):
+            given[arguments.one_of("the name of an input", name, (load, "temperature"))] = signal
+        signals: dict[str, Scenario | float] = {}
+        for name, signal in given.items():
+            if not isinstance(signal, Scenario | Real | str):
                 raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
-            if isinstance(signal, Scenario) and signal.duration != command.duration:
-                raise ValueError(f"{name} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
             if not isinstance(signal, Scenario):
-                arguments.number(name, signal)
+                unit = "K" if name == "temperature" else _core.load_input(drive)[1]
+                signals[name] = arguments.number(name, signal, unit)
+                continue
+            signals[name] = signal
+            if signal.duration != command.duration:
+                raise ValueError(f"{name} lasts {signal.duration} s, command {command.duration} s; both must last equally long")
         if not isinstance(signals["temperature"], Scenario):
             check_temperature(signals["temperature"])
         return cls(command, signals[load], signals["temperature"])

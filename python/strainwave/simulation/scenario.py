@@ -6,7 +6,8 @@ Every command signal has one form, a line in pieces, which may jump, and waves:
           \quad t_k \le t < t_{k+1}
 
 Sums and multiples keep this form, and rates of change are exact. The unit of a command is that of whatever is
-commanded, rad for a position-controlled drive, V for an open-loop motor; a scenario carries none.
+commanded, rad for a position-controlled drive, V for an open-loop motor; a scenario carries none. A text with a unit, as
+``sine("5 deg", "2 Hz", duration="500 ms")``, is converted to SI units.
 
 >>> command = ramp(rate=0.3, duration=5.0) + 0.5 * sine(amplitude=0.2, frequency=2.0, duration=5.0)
 >>> float(command.value(1.125))
@@ -294,7 +295,7 @@ class Scenario(Pictured):
         return curve_figure(f"{name.capitalize()} over time", Series("time", "s", times), Series(name, unit, values))
 
 
-def constant(value: float, duration: float) -> Scenario:
+def constant(value: float | str, duration: float | str) -> Scenario:
     """The same command all the time: c(t) = value.
 
     Args:
@@ -307,12 +308,12 @@ def constant(value: float, duration: float) -> Scenario:
     >>> constant(1.5, duration=2.0).value([0.0, 2.0])
     array([1.5, 1.5])
     """
-    value = arguments.number("constant.value", value)
+    value = _command("constant.value", value)
     duration = _duration("constant.duration", duration)
     return _from(0.0, duration, level=value, slope=0.0)
 
 
-def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
+def step(amplitude: float | str, duration: float | str, start: float | str = 0.0) -> Scenario:
     """A jump: c(t) = amplitude from t = start on, 0 before.
 
     Args:
@@ -326,13 +327,13 @@ def step(amplitude: float, duration: float, start: float = 0.0) -> Scenario:
     >>> step(2.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 2., 2.])
     """
-    amplitude = arguments.number("step.amplitude", amplitude)
+    amplitude = _command("step.amplitude", amplitude)
     duration = _duration("step.duration", duration)
     start = arguments.number("step.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=amplitude, slope=0.0)
 
 
-def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
+def ramp(rate: float | str, duration: float | str, start: float | str = 0.0) -> Scenario:
     """A steady rise: c(t) = rate * (t - start) from t = start on, 0 before.
 
     Args:
@@ -346,13 +347,15 @@ def ramp(rate: float, duration: float, start: float = 0.0) -> Scenario:
     >>> ramp(4.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 0., 2.])
     """
-    rate = arguments.number("ramp.rate", rate)
+    rate = _command("ramp.rate", rate)
     duration = _duration("ramp.duration", duration)
     start = arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
     return _from(start, duration, level=0.0, slope=rate)
 
 
-def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0, offset: float = 0.0) -> Scenario:
+def sine(
+    amplitude: float | str, frequency: float | str, duration: float | str, phase: float | str = 0.0, offset: float | str = 0.0
+) -> Scenario:
     """A sine: c(t) = offset + amplitude * sin(2 pi * frequency * t + phase).
 
     Args:
@@ -368,16 +371,16 @@ def sine(amplitude: float, frequency: float, duration: float, phase: float = 0.0
     >>> sine(2.0, frequency=0.25, duration=4.0, offset=1.0).value([0.0, 1.0, 3.0])
     array([ 1.,  3., -1.])
     """
-    amplitude = arguments.number("sine.amplitude", amplitude)
+    amplitude = _command("sine.amplitude", amplitude)
     frequency = arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
     duration = _duration("sine.duration", duration)
     phase = arguments.number("sine.phase", phase, "rad")
-    offset = arguments.number("sine.offset", offset)
+    offset = _command("sine.offset", offset)
     wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
     return replace(constant(offset, duration), waves=(wave,))
 
 
-def chirp(amplitude: float, start_frequency: float, stop_frequency: float, duration: float) -> Scenario:
+def chirp(amplitude: float | str, start_frequency: float | str, stop_frequency: float | str, duration: float | str) -> Scenario:
     """A sine whose frequency moves linearly from one value to another.
 
     c(t) = amplitude * sin(2 pi * (f0 * t + (f1 - f0) * t**2 / (2 * duration))), so that its instantaneous frequency,
@@ -395,7 +398,7 @@ def chirp(amplitude: float, start_frequency: float, stop_frequency: float, durat
     >>> float(chirp(1.0, start_frequency=0.0, stop_frequency=1.0, duration=8.0).value(1.0).round(12))  # sin(pi / 8)
     0.382683432365
     """
-    amplitude = arguments.number("chirp.amplitude", amplitude)
+    amplitude = _command("chirp.amplitude", amplitude)
     start_frequency = arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
     stop_frequency = arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
     duration = _duration("chirp.duration", duration)
@@ -403,7 +406,9 @@ def chirp(amplitude: float, start_frequency: float, stop_frequency: float, durat
     return replace(constant(0.0, duration), waves=(wave,))
 
 
-def pulse_train(amplitude: float, period: float, width: float, duration: float, start: float = 0.0) -> Scenario:
+def pulse_train(
+    amplitude: float | str, period: float | str, width: float | str, duration: float | str, start: float | str = 0.0
+) -> Scenario:
     """Rectangular pulses: c(t) = amplitude while 0 <= t - start - k * period < width for a k = 0, 1, 2, …, else 0.
 
     Args:
@@ -419,7 +424,7 @@ def pulse_train(amplitude: float, period: float, width: float, duration: float, 
     >>> pulse_train(3.0, period=1.0, width=0.25, duration=2.0, start=0.5).breaks
     array([0.5 , 0.75, 1.5 , 1.75])
     """
-    amplitude = arguments.number("pulse_train.amplitude", amplitude)
+    amplitude = _command("pulse_train.amplitude", amplitude)
     period = arguments.number("pulse_train.period", period, "s", low=0.0)
     width = arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
     duration = _duration("pulse_train.duration", duration)
@@ -460,6 +465,12 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
         row = int(np.argmin(np.isfinite(slope)))
         raise ValueError(f"table.value changes so much from row {row} to row {row + 1} that its rate is not finite; take less")
     return Scenario(float(points.time[-1]), points.time[:-1], points["value"][:-1], slope)
+
+
+def _command(name: str, value: object) -> float:
+    from strainwave.files.entries import number_of
+
+    return arguments.number(name, number_of(name, value, "") if isinstance(value, str) else value)
 
 
 def _duration(name: str, value: object) -> float:

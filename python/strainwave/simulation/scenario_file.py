@@ -366,7 +366,7 @@ def _number(place: str, entry: Any, unit: str) -> float:
 def _numbers(place: str, entry: Any, unit: str, absolute: bool = True) -> Any:
     """A number or a list of numbers, in this unit; a file may write them in another."""
     value, written = _with_unit(place, entry) if isinstance(entry, dict) else (entry, unit)
-    numbers = [arguments.number(place, each) for each in (value if isinstance(value, list) else [value])]
+    numbers = [arguments.number(place, each, written) for each in (value if isinstance(value, list) else [value])]
     with at(f"{place}:"):
         if not absolute and _in_unit(0.0, written, unit) != 0.0:
             raise ValueError(f"what is added is a difference; {written} has a zero of its own, so write {unit}")

@@ -50,7 +50,7 @@ class State(Presented, Mapping[str, float]):
     def __init__(self) -> None:
         raise TypeError("a state is made by a drive's rest(), by sw.analysis.equilibrium(...), or is the end of a run")
 
-    def replace(self, changes: Mapping[str, float] | None = None, /, **named: float) -> State:
+    def replace(self, changes: Mapping[str, float | str] | None = None, /, **named: float | str) -> State:
         """The same state with other numbers, by their names.
 
         Raises:
@@ -61,7 +61,8 @@ class State(Presented, Mapping[str, float]):
 
         numbers = self.numbers.copy()
         for name, value in {**(changes or {}), **named}.items():
-            numbers[self._place(name)] = arguments.number(name, value)
+            place = self._place(name)
+            numbers[place] = arguments.number(name, value, self._described[place][1])
         return State.of(self.drive, numbers)
 
     @property
@@ -176,7 +177,7 @@ def start_of(drive: Drive, state: object, name: str = "initial") -> State:
     return state if state.drive is drive else State.of(drive, state.numbers)
 
 
-Initial: TypeAlias = State | Mapping[str, float]  # what a run begins with
+Initial: TypeAlias = State | Mapping[str, float | str]  # what a run begins with
 
 
 def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 1) -> Known | None:
@@ -198,6 +199,8 @@ def known(drive: Drive, initial: Mapping[str, ArrayLike] | None, members: int = 
 
 
 def _value(name: str, value: ArrayLike, members: int) -> Array:
+    if isinstance(value, str):
+        value = arguments.number(f"initial {name}", value, INITIAL_QUANTITIES[name][1] if name in INITIAL_QUANTITIES else "")
     values = arguments.numbers(f"initial {name}", value)
     if values.shape not in ((), (members,)):
         each = "one value" if members == 1 else f"one value, or one for each of {members} members"

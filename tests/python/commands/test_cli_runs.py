@@ -174,7 +174,7 @@ SIMULATE = ["simulate", "joint.toml", "--scenario", "ramp.toml"]
         ([*SIMULATE, "--set", "load.inertia=nan"], ('"nan" is no number',)),
         ([*SIMULATE, "--set", "load.inertia=\u0661\u0662"], ('"\u0661\u0662" is no number',)),
         ([*SIMULATE, "--set", f"load.inertia=1{400 * '0'}"], ("is too large a number",)),
-        ([*SIMULATE, "--set", "load.inertia=heavy"], ("inertia.inertia must be a number, not 'heavy'",)),
+        ([*SIMULATE, "--set", "load.inertia=heavy"], ('"heavy" must be a number and its unit, as "1.2 kg.m2"',)),
         ([*SIMULATE, "--set", "load.mass=1"], ("inertia has no parameter 'mass'; it has inertia",)),
         ([*SIMULATE, "--set", "gear.stiffness.k1=1e18"], ("dt = 0.0002 s is too coarse for this drive",)),
         ([*SIMULATE, "-o", "run.xls"], ("--out run.xls must end in .parquet or .csv",)),

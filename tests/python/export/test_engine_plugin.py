@@ -191,7 +191,7 @@ def test_old_or_missing_mujoco_and_a_missing_compiler_are_named(monkeypatch):
         raise NoCompilerError("there is no C++20 compiler")
 
     with monkeypatch.context() as change:
-        change.setattr("strainwave.export.coupled.library.find_compiler", none)
+        change.setattr("strainwave.export.coupled.drive.find_compiler", none)
         with pytest.raises(NoCompilerError, match=r"there is no C\+\+20 compiler"):
             sw.export.mujoco_plugin(sw.GearSet.read("position-drive"))
     with monkeypatch.context() as change:

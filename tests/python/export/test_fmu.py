@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave import parameters
-from strainwave.export.fmu import build, comparison
-from strainwave.export.fmu.variables import STEP_NAME, recorded, variables
-from strainwave.export.internal_step import default_step
+from strainwave.export.fmu import build
+from strainwave.export.fmu.source import STEP_NAME, recorded, variables
+from strainwave.export.host import default_step
 from strainwave.files.units import convert
 from strainwave.native.compilers import NoCompilerError
 from typer.testing import CliRunner
@@ -56,7 +56,7 @@ def opened(version, stack):
     """A new instance of the FMU of a version, and the outputs of its drive by name."""
     drive = drive_of(version)
     found = variables(drive, STEP)
-    return stack.enter_context(comparison.instance(content_of(version), found, version)), recorded(drive, found)
+    return stack.enter_context(build.instance(content_of(version), found, version)), recorded(drive, found)
 
 
 @cache

@@ -140,5 +140,5 @@ def test_command_writes_a_package_or_names_the_missing_compiler(tmp_path, monkey
     assert (tmp_path / "StrainWaveDrive/package.mo").is_file()
     assert np.isfinite(exported().numbers["period"][0])
     monkeypatch.undo()
-    monkeypatch.setattr("strainwave.export.coupled.library.find_compiler", none)
+    monkeypatch.setattr("strainwave.export.coupled.drive.find_compiler", none)
     assert isinstance(CliRunner().invoke(verb, words).exception, NoCompilerError)

@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.commands.export import export
-from strainwave.export.newton import build, source
+from strainwave.export.newton import build
 from strainwave.native import nvrtc
 from typer.testing import CliRunner
+
+from tests.evidence.newton_agreement import JOINT_STEP, Follower
 
 NAME = "position-drive"  # whose code Warp compiles in a few seconds
 PACKAGE = "reference_drive_of_a_test"
@@ -122,6 +124,23 @@ def test_a_masked_gear_begins_anew_at_its_joint(package):
 
 
 @pytest.mark.slow("export")
+def test_the_bodies_within_a_gear_begin_at_the_speed_of_the_joint(tmp_path):
+    """At rest at the begin, the wave generator of a staged gear twisted it by two thirds more than the whole motion does."""
+    exported = build.newton(sw.GearSet.read("tilt-actuator"), gpu=False, compare=False)
+    for path, content in exported.files.items():
+        (tmp_path / path).write_text(content)
+    about = json.loads(exported.files["drive.json"])
+    drive = sw.GearSet.read("tilt-actuator").drive.replace(load=sw.loads.Prescribed(), meter=sw.meter.NoMeter())
+    turning = sw.scenario.ramp(0.5, 0.1)
+    run = sw.simulate(drive, turning, about["step"], sample=JOINT_STEP, inputs={"output_angle": turning})
+    value, rate = turning.value(run["time"]), turning.rate(run["time"])
+    joint = np.ascontiguousarray(np.array([value, rate, value, rate, np.zeros(len(run))]).T.astype(np.float32))
+    outputs = Follower(drive, tmp_path, about, joint).by_compiler()
+    for name in ("torque", "twist", "input_speed"):  # the simulation begins with the current that the command asks for
+        assert np.abs(outputs[name] - run[name]).max() < 0.01 * np.abs(run[name]).max(), name
+
+
+@pytest.mark.slow("export")
 def test_a_builder_makes_actuators_of_joints(package):
     import newton
 
@@ -165,8 +184,8 @@ def test_numbers_that_no_gear_has_are_refused(package, numbers, message):
 def test_its_source_is_one_text_and_has_code_for_gpus(monkeypatch):
     if not nvrtc.is_installed():
         pytest.skip("the package nvidia-cuda-nvrtc is not installed")
-    compiled = source.ptx
-    monkeypatch.setattr(source, "ptx", lambda text: compiled(text, "--device-debug"))  # optimised it takes 20 s
+    compiled = build.ptx
+    monkeypatch.setattr(build, "ptx", lambda text: compiled(text, "--device-debug"))  # optimised it takes 20 s
     found = sw.export.newton(sw.Drive(), compare=False)
     assert "#include" not in found.files["drive.hpp"]
     for name in ("words", "prepare", "advance"):

@@ -246,7 +246,7 @@ def test_a_data_sheet_in_a_file_is_read_as_a_gear_set_and_saved_as_one(tmp_path:
         ({"ratio": -100, "spread": 1e300}, r"^spread = 1e\+300 must lie in \[0, 10\]$"),
         ({"ratio": -100, "k1": 1e300}, r"^k1 = 1e\+300 N.m/rad must lie in \[1e-06, 1e\+12\]$"),
         ({"ratio": -100, "k1": 10**400}, "^k1 = 1000.* is too large a number$"),
-        ({"ratio": -100, "k1": "1e3 x 10^999 N.m/rad"}, "^k1 = .*: value = inf N.m/rad must be finite$"),
+        ({"ratio": -100, "k1": "1e3 x 10^999 N.m/rad"}, "^k1 = .* must be finite$"),
         ({"ratio": -100, "k1": "\u0661\u0662 N.m/rad"}, "must be a number and its unit"),
         ({"ratio": -100, "maximum_input_speed": "5e-324 r/min"}, r"^maximum_input_speed = 0.0 rad/s must lie in"),
         ({"ratio": -100, "size": 25, "hysteresis_loss": "20 arcmin"}, "wider than"),

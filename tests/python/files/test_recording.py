@@ -249,7 +249,7 @@ def test_what_is_not_there_is_refused(ask: Callable[[], object], message: str) -
         (lambda: RUN.with_column([1], RUN["time"], "s"), "the name of a column must be a text, not [1]"),  # type: ignore[arg-type]
         (lambda: RUN.select("time"), "names must be a list of names, not 'time'"),
         (lambda: RUN.plot("time"), "names must be a list of names, not 'time'"),
-        (lambda: RUN.between("0", "1"), "start must be a number, not '0'"),  # type: ignore[arg-type]
+        (lambda: RUN.between([0], 1), "start must be a number, not [0]"),  # type: ignore[arg-type]
         (lambda: RUN.between(0.0, None), "stop must be a number, not None"),  # type: ignore[arg-type]
     ],
 )

@@ -75,7 +75,7 @@ def test_what_makes_no_diagram_is_refused() -> None:
         (lambda: sw.orders.campbell(recording(np.full(len(TIME), 5.0)), "torque"), "input_speed does not change"),
         (lambda: sw.orders.campbell(run.with_column("torque", 0.0 * TIME, "N.m"), "torque"), "torque does not change"),
         (lambda: sw.orders.campbell(run, "current"), 'no column "current"'),
-        (lambda: sw.orders.campbell(run, "torque").plot(orders=[0.0]), r"orders = 0.0 1 must lie in \(0, inf\)"),
+        (lambda: sw.orders.campbell(run, "torque").plot(orders=[0.0]), r"orders = 0.0 must lie in \(0, inf\)"),
     ):
         with pytest.raises(ValueError, match=message):
             make()

@@ -337,10 +337,26 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
         make()
 
 
+def test_texts_with_units_are_the_numbers_in_si_units() -> None:
+    assert sine("90 deg", "2000 mHz", duration="500 ms", phase="180 deg") == sine(np.pi / 2.0, 2.0, 0.5, phase=np.pi)
+    assert constant("20 degC", 1.0) == constant(293.15, 1.0)
+    for amplitude, wrong in (
+        ("5", 'sine.amplitude = "5" has no unit; write it as "5 deg"'),
+        (
+            "5 furlong",
+            'sine.amplitude = "5 furlong": unit "furlong" is not known; write it like N.m, rad/s, deg; write it as "5 deg"',
+        ),
+    ):
+        with pytest.raises(ValueError, match=exactly(wrong)):
+            sine(amplitude, 1.0, 1.0)
+    with pytest.raises(ValueError, match=exactly('sine.frequency: cannot convert "s" to "Hz"; write it as "1.2 Hz"')):
+        sine(1.0, "3 s", 1.0)
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: sine("1", 1.0, 1.0), "sine.amplitude must be a number, not '1'"),  # type: ignore[arg-type]
+        (lambda: sine(None, 1.0, 1.0), "sine.amplitude must be a number, not None"),  # type: ignore[arg-type]
         (lambda: step(1.0, None), "step.duration must be a number, not None"),  # type: ignore[arg-type]
         (lambda: replace(step(1.0, 1.0), waves=[3]), "scenario.waves must be a tuple of waves, not [3]"),
         (lambda: replace(step(1.0, 1.0), waves=(3,)), "scenario.waves must be a tuple of waves, not (3,)"),

@@ -73,8 +73,9 @@ def test_a_state_changes_for_nobody() -> None:
         state.numbers[0] = 1.0
     with pytest.raises(ValueError, match="must be one of"):
         state.replace(speed=1.0)
-    with pytest.raises(ValueError, match="input_speed = inf must be finite"):
+    with pytest.raises(ValueError, match="input_speed = inf rad/s must be finite"):
         state.replace(input_speed=inf)
+    assert state.replace(input_speed="60 rpm") == state.replace(input_speed=60.0 * (np.pi / 30.0))
     with pytest.raises(TypeError, match="is made by a drive"):
         State()
 
@@ -276,7 +277,7 @@ def _value(model: Any, path: str) -> Any:
         ({"input_angle": 1.0, "output_angle": 0.1, "torque": 0.1}, ValueError, "each follows from the others"),
         ({"speed": 1.0}, ValueError, 'the name of a quantity in initial = "speed" must be one of'),
         ({"torque": np.nan}, ValueError, "initial torque must be finite"),
-        ({"torque": "much"}, TypeError, "torque"),
+        ({"torque": "much"}, ValueError, 'initial torque = "much" must be a number and its unit, as "1.2 N.m"'),
         ({"torque": [1.0, 2.0]}, ValueError, "must be one value"),
         ({"current": 1.0}, ValueError, "it follows at once"),
         (3, TypeError, "initial"),

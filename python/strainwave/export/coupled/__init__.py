@@ -1,7 +1,5 @@
 """Drives whose output shaft another program moves."""
 
-from strainwave.export.coupled.comparison import losses
-from strainwave.export.coupled.drive import MAX_STABLE_SHARE, CoupledDrive
-from strainwave.export.coupled.library import SUFFIXES, shared_library
+from strainwave.export.coupled.drive import MAX_STABLE_SHARE, SUFFIXES, CoupledDrive, losses, shared_library
 
 __all__ = ["MAX_STABLE_SHARE", "SUFFIXES", "CoupledDrive", "losses", "shared_library"]

@@ -18,7 +18,7 @@ from strainwave.export import cplusplus
 from strainwave.export.exported import Form, comment_of
 from strainwave.export.firmware import source
 from strainwave.export.firmware.step import Member, step
-from strainwave.export.names import checked_name
+from strainwave.export.host import checked_name
 from strainwave.files import gear_file
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of

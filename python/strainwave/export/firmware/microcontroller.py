@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, Gear
 from strainwave.export.firmware.build import FLAGS, Firmware, drive_with, firmware
 from strainwave.export.firmware.step import step
-from strainwave.export.fmu.comparison import moving_run
+from strainwave.export.fmu.build import moving_run
 from strainwave.files.gear_set import GearSet
 from strainwave.native.static_type import Scalar
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from strainwave.export import cplusplus
 from strainwave.export.firmware.step import Member, StepFunction
-from strainwave.export.internal_step import DEFAULT_STEP
+from strainwave.export.host import DEFAULT_STEP
 from strainwave.native.static_type import short_name, static_type
 
 FLAGS = "-std=c++20 -O2 -ffreestanding -ffp-contract=off -fno-exceptions -fno-rtti"

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from strainwave import Drive, _core, arguments
-from strainwave.export.fmu.variables import RATES
-from strainwave.export.internal_step import MIN_STEP, default_step, internal_step
+from strainwave.export.fmu.source import RATES
+from strainwave.export.host import MIN_STEP, default_step, internal_step
 from strainwave.messages import shortened
 from strainwave.simulation.controller import MAX_SIGNAL
 from strainwave.simulation.excitation import ROOM_TEMPERATURE

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib import metadata
 from xml.etree import ElementTree
 
-from strainwave.export.fmu.variables import Variable, nominal
+from strainwave.export.fmu.source import Variable, nominal
 from strainwave.files.units import base_exponents
 
 Element = ElementTree.Element

@@ -3,6 +3,7 @@
 #include "model.hpp"
 
 #define SW_FMI(name) fmi2##name
+#define SW_FMI_STATE(verb) fmi2##verb##FMUstate
 #define SW_TOKEN "the GUID"
 
 namespace {
@@ -20,11 +21,18 @@ void log(const Instance& instance, const char* text) {
     if (instance.logger) instance.logger(instance.environment, instance.name, fmi2Error, "logStatusError", "%s", text);
 }
 
-constexpr auto no_such_type = "all variables of this FMU are of type Real";
-
 }  // namespace
 
 #include "functions.hpp"
+
+// Get and set functions of the types that no variable has.
+#define SW_NO_VARIABLES(Type)                                                                      \
+    fmi2Status fmi2Get##Type(fmi2Component c, References, size_t count, fmi2##Type[]) {            \
+        return count == 0 ? fmi2OK : unsupported(c, "all variables of this FMU are of type Real"); \
+    }                                                                                              \
+    fmi2Status fmi2Set##Type(fmi2Component c, References, size_t count, const fmi2##Type[]) {      \
+        return count == 0 ? fmi2OK : unsupported(c, "all variables of this FMU are of type Real"); \
+    }
 
 extern "C" {
 
@@ -54,37 +62,13 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t co
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t count, const fmi2Real value[]) {
     return put(c, vr, count, value);
 }
-fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference[], size_t count, fmi2Integer[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
-fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference[], size_t count, fmi2Boolean[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
-fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference[], size_t count, fmi2String[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
-fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference[], size_t count, const fmi2Integer[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
-fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference[], size_t count, const fmi2Boolean[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
-fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t count, const fmi2String[]) {
-    return count == 0 ? fmi2OK : unsupported(c, no_such_type);
-}
+SW_NO_VARIABLES(Integer)
+SW_NO_VARIABLES(Boolean)
+SW_NO_VARIABLES(String)
 
-fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) { return saved(c, state); }
-fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-    model_of(c).restore(state);
-    return fmi2OK;
-}
-fmi2Status fmi2FreeFMUstate(fmi2Component, fmi2FMUstate* state) { return freed(state); }
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component, fmi2FMUstate, size_t* size) {
     *size = serialised_size;
     return fmi2OK;
-}
-fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-    return serialised(c, state, bytes, size);
 }
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
     return deserialised(c, bytes, size, state);
@@ -129,11 +113,6 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
     const bool done = model_of(c).apply_events(has_changed, next);
     *info = {fmi2False, fmi2False, fmi2False, has_changed, next < strainwave::unbounded, next};
     return checked(c, done);
-}
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* event, fmi2Boolean* terminate) {
-    *event = model_of(c).complete();
-    *terminate = fmi2False;
-    return fmi2OK;
 }
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t) {
     model_of(c).get_derivatives(derivatives);

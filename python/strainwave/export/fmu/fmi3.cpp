@@ -3,6 +3,7 @@
 #include "model.hpp"
 
 #define SW_FMI(name) fmi3##name
+#define SW_FMI_STATE(verb) fmi3##verb##FMUState
 #define SW_TOKEN "the instantiation token"
 
 namespace {
@@ -104,18 +105,9 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference, size_
     return unsupported(c, "this FMU has no arrays, and its dependencies are in modelDescription.xml");
 }
 
-fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) { return saved(c, state); }
-fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    model_of(c).restore(state);
-    return fmi3OK;
-}
-fmi3Status fmi3FreeFMUState(fmi3Instance, fmi3FMUState* state) { return freed(state); }
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance, fmi3FMUState, size_t* size) {
     *size = serialised_size;
     return fmi3OK;
-}
-fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-    return serialised(c, state, bytes, size);
 }
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState* state) {
     return deserialised(c, bytes, size, state);
@@ -175,11 +167,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 length, fmi3
 }
 fmi3Status fmi3ActivateModelPartition(fmi3Instance c, fmi3ValueReference, fmi3Float64) { return unsupported(c, no_clocks); }
 
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean* event, fmi3Boolean* terminate) {
-    *event = model_of(c).complete();
-    *terminate = fmi3False;
-    return fmi3OK;
-}
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivatives[], size_t) {
     model_of(c).get_derivatives(derivatives);
     return fmi3OK;

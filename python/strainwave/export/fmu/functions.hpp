@@ -1,5 +1,6 @@
 // Functions that the versions of FMI have in common. Before it come Handle, Status, SW_FMI(name) for a name of the version,
-// SW_TOKEN for what it calls the token, Instance with a model, and log(instance, text) of an error.
+// SW_FMI_STATE(verb) for one that ends in FMUstate, SW_TOKEN for what it calls the token, Instance with a model, and
+// log(instance, text) of an error.
 #pragma once
 #include <new>
 
@@ -49,27 +50,7 @@ Status made_room(Handle c, void** state) {
     if (!*state) *state = malloc(fmu::Model::state_size);
     return *state ? SW_FMI(OK) : unsupported(c, no_memory);
 }
-Status saved(Handle c, void** state) {
-    const Status status = made_room(c, state);
-    if (status == SW_FMI(OK)) model_of(c).save(*state);
-    return status;
-}
-Status freed(void** state) {
-    if (state) {
-        free(*state);
-        *state = nullptr;
-    }
-    return SW_FMI(OK);
-}
-template <class Byte>
-Status serialised(Handle c, const void* state, Byte bytes[], size_t size) {
-    if (size < serialised_size) return unsupported(c, "the array for the state is too short");
-    memcpy(bytes, fmu::token, sizeof fmu::token);
-    memcpy(bytes + sizeof fmu::token, state, fmu::Model::state_size);
-    return SW_FMI(OK);
-}
-template <class Byte>
-Status deserialised(Handle c, const Byte bytes[], size_t size, void** state) {
+Status deserialised(Handle c, const SW_FMI(Byte) bytes[], size_t size, void** state) {
     if (size != serialised_size || memcmp(bytes, fmu::token, sizeof fmu::token) != 0)
         return unsupported(c, "the bytes are not a state of this FMU");
     const Status status = made_room(c, state);
@@ -96,6 +77,30 @@ Status SW_FMI(Reset)(Handle c) {
     model_of(c).reset();
     return SW_FMI(OK);
 }
+
+Status SW_FMI_STATE(Get)(Handle c, void** state) {
+    const Status status = made_room(c, state);
+    if (status == SW_FMI(OK)) model_of(c).save(*state);
+    return status;
+}
+Status SW_FMI_STATE(Set)(Handle c, void* state) {
+    model_of(c).restore(state);
+    return SW_FMI(OK);
+}
+Status SW_FMI_STATE(Free)(Handle, void** state) {
+    if (state) {
+        free(*state);
+        *state = nullptr;
+    }
+    return SW_FMI(OK);
+}
+Status SW_FMI_STATE(Serialize)(Handle c, void* state, SW_FMI(Byte) bytes[], size_t size) {
+    if (size < serialised_size) return unsupported(c, "the array for the state is too short");
+    memcpy(bytes, fmu::token, sizeof fmu::token);
+    memcpy(bytes + sizeof fmu::token, state, fmu::Model::state_size);
+    return SW_FMI(OK);
+}
+
 Status SW_FMI(EnterContinuousTimeMode)(Handle) { return SW_FMI(OK); }
 Status SW_FMI(SetTime)(Handle c, double time) {
     model_of(c).set_time(time);
@@ -106,6 +111,11 @@ Status SW_FMI(SetContinuousStates)(Handle c, const double x[], size_t count) {
 }
 Status SW_FMI(GetContinuousStates)(Handle c, double x[], size_t) {
     model_of(c).get_states(x);
+    return SW_FMI(OK);
+}
+Status SW_FMI(CompletedIntegratorStep)(Handle c, SW_FMI(Boolean), SW_FMI(Boolean) * event, SW_FMI(Boolean) * terminate) {
+    *event = model_of(c).complete();
+    *terminate = false;
     return SW_FMI(OK);
 }
 Status SW_FMI(GetEventIndicators)(Handle c, double indicators[], size_t count) {

@@ -80,14 +80,14 @@ public:
 constexpr State at_joint(const Compiled& drive, const Input& u) {
     State x = drive.rest();
     const S ratio = drive.gear.kinematics.ratio();
+    x.continuous.input_speed = ratio * u.load_rate;  // first, as the bodies within a gear move with the shafts
+    x.continuous.output_speed = u.load_rate;
     for (int i = 0; i < settling_rounds; ++i) {
         const S angle = ratio * (u.load + x.continuous.transmission_error);
         x.turns = strainwave::rint(angle / S(2.0 * strainwave::pi));
         x.continuous.input_angle = angle - x.turns * S(2.0 * strainwave::pi);
         drive.settle_gear(x, drive.geometry(x, x.continuous), S(0.0), S(0.0), u.temperature);
     }
-    x.continuous.input_speed = ratio * u.load_rate;
-    x.continuous.output_speed = u.load_rate;
     x.continuous.sensors = drive.sensors.steady_state(drive.measurable(x, x.continuous, u, S(0.0)));
     return drive.consistent(x);
 }

@@ -1,4 +1,4 @@
-"""Actuators of Newton: a Python package with the C++ code of a drive, and its difference to the simulation."""
+"""Actuators of Newton: a Python package with the C++ code of a drive, its PTX, and its difference to the simulation."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import json
 import sys
 import warnings
 from collections.abc import Iterator
+from functools import lru_cache
 from hashlib import sha256
+from importlib import resources
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
@@ -18,14 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, _core, arguments, loads, meter
-from strainwave.export.command_mode import Command, command_mode
+from strainwave.export import cplusplus
 from strainwave.export.exported import Exported, Form, stating_origins
-from strainwave.export.internal_step import internal_step
-from strainwave.export.newton import source
+from strainwave.export.host import Command, command_mode, internal_step
 from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import drive_of
 from strainwave.native import nvrtc
-from strainwave.native.static_type import SCALARS, Scalar
+from strainwave.native.static_type import SCALARS, Scalar, in_words, static_type
 from strainwave.simulation import scenario, signals
 from strainwave.simulation.excitation import ROOM_TEMPERATURE
 from strainwave.simulation.run import Run, simulate
@@ -45,6 +46,14 @@ OTHER_COMMAND = 0.1  # in other units: V, A, N.m
 PACKAGE = "strainwave_drive"  # folder by default; `newton` would hide the package of that name
 DIGEST_LENGTH = 16  # hexadecimal digits
 TEMPERATURE = "temperature"  # the last of the numbers
+OWN = resources.files("strainwave.export.newton")
+TARGETS_BY_UNIT = {
+    "rad": "position",
+    "rad/s": "speed",
+}  # target of a joint by the unit of the command; feedforward for other units
+FIRST_STATE = 5  # numbers of a gear before those of its state, as in actuator.hpp
+CUDA_ARCHITECTURE = "compute_75"  # virtual, of Turing and later; a driver compiles it for its GPU
+MAX_REMEMBERED_TEXTS = 8  # texts of PTX, of some MB each
 
 
 @stating_origins
@@ -98,22 +107,22 @@ def newton(
         "made_by": f"strainwave {version('strainwave')}",
         "scalar": scalar,
         "step": step,
-        "memory": source.FIRST_STATE + len(_core.state(drive)[0]),
-        "command": source.TARGETS_BY_UNIT.get(signals.command_unit(drive), "feedforward"),
+        "memory": FIRST_STATE + len(_core.state(drive)[0]),
+        "command": TARGETS_BY_UNIT.get(signals.command_unit(drive), "feedforward"),
         "command_unit": signals.command_unit(drive),
         "outputs": {each.name: each.unit for each in shown},
         "parameters": dict(_parameters(drive)),
     }
     mode = command_mode(drive, command)
-    text = source.source(drive, scalar, signals.command_unit(drive), len(shown), mode == "followed")
+    text = _source(drive, scalar, signals.command_unit(drive), len(shown), mode == "followed")
     files: dict[str, str | bytes] = {
-        "__init__.py": source.OWN.joinpath("runtime.py").read_text("utf-8"),
+        "__init__.py": OWN.joinpath("runtime.py").read_text("utf-8"),
         "drive.hpp": text,
         "drive.json": json.dumps(about, indent=1) + "\n",
         "README.md": _readme(about),
     }
     if gpu and nvrtc.is_installed():
-        files["drive.ptx"] = source.ptx(text)
+        files["drive.ptx"] = ptx(text)
     if drawn:
         files["draws.json"] = json.dumps({path: values.tolist() for path, values in drawn.items()}) + "\n"
     installed = all(find_spec(each) for each in ("newton", "warp"))
@@ -254,3 +263,58 @@ for each name in `OUTPUTS`.
 NEWTON = Form(
     newton, "Newton: thousands of joints, CPU or GPU", "a Python package that needs Newton and Warp only", "newton.md", PACKAGE
 )
+
+
+def _source(drive: Drive, scalar: str, command: str, outputs: int, follows: bool) -> str:
+    """Return the code of an actuator as one text that includes nothing.
+
+    Args:
+        drive: whose load prescribes the motion of the output
+        scalar: "float" or "double"
+        command: unit of its command
+        outputs: number of outputs
+        follows: whether a command without a rate moves in a line from call to call; else it is held
+    """
+    texts = {"drive.hpp": _drive_header(drive, scalar, command, outputs, follows)}
+    return cplusplus.amalgamated(["actuator.hpp"], texts | {"actuator.hpp": OWN.joinpath("actuator.hpp").read_text("utf-8")})
+
+
+def _drive_header(drive: Drive, scalar: str, command: str, outputs: int, follows: bool) -> str:
+    """Return the header with the static type of a drive."""
+    laws, shape, _ = _core.parts(drive)
+    includes = "".join(f"#include <{each}>\n" for each in cplusplus.headers_of(drive))
+    return f"""// {in_words(drive)}
+#pragma once
+{includes}
+namespace actuator {{
+
+using S = {scalar};
+
+template <class S>
+using Drive = {static_type(drive)};
+
+inline constexpr int laws[] = {{{", ".join(map(str, [*laws, 0]))}}};    // one more than there are,
+inline constexpr int shape[] = {{{", ".join(map(str, [*shape, 0]))}}};  // so that none is empty
+inline constexpr int parameter_count = {len(_core.parameters(drive))}, output_count = {outputs};
+
+enum class CommandIs {{ position, speed, feedforward }};
+inline constexpr CommandIs command_is = CommandIs::{TARGETS_BY_UNIT.get(command, "feedforward")};
+inline constexpr bool is_followed = {str(follows).lower()};
+
+}}  // namespace actuator
+"""
+
+
+@lru_cache(maxsize=MAX_REMEMBERED_TEXTS)
+def ptx(text: str, *options: str) -> str:
+    """Return the PTX of an actuator.
+
+    Args:
+        text: source of the actuator
+        options: of NVRTC, further ones
+
+    Raises:
+        CompileError: NVRTC reports an error
+    """
+    kernels = cplusplus.INCLUDING.sub("", OWN.joinpath("cuda.hpp").read_text("utf-8")).replace("#pragma once\n", "")
+    return nvrtc.compiled(text + kernels, f"--gpu-architecture={CUDA_ARCHITECTURE}", *options)[0]

@@ -277,7 +277,7 @@ def regular(rows: int, rate: float) -> Clock:
     >>> regular(3, rate=500.0).time
     array([0.   , 0.002, 0.004])
     """
-    arguments.number("rate", rate, "Hz", "()", low=0.0)
+    rate = arguments.number("rate", rate, "Hz", "()", low=0.0)
     remark = f"it has no time: {rate:g} rows in a second, as was given"
     return Clock(np.arange(rows, dtype=float) / rate, np.arange(rows), (remark,))
 

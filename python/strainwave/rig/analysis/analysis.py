@@ -191,7 +191,7 @@ def analyse(loop: Loop, *, gear_set: GearSet | None = None, rated_torque: float 
     if gear_set is not None and not isinstance(gear_set, GearSet):
         raise TypeError(f"gear_set must be a GearSet, as sw.GearSet.read(...) gives it, not {shortened(gear_set)}")
     if rated_torque is not None:
-        arguments.number("rated_torque", rated_torque, "N.m", low=0.0)
+        rated_torque = arguments.number("rated_torque", rated_torque, "N.m", low=0.0)
     elif gear_set is not None:
         rated_torque = rated_torque_of(gear_set, loop.side)
     loop = _shortened(loop)

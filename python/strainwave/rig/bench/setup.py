@@ -115,7 +115,7 @@ class Camera:
 
     def __post_init__(self) -> None:
         positive("aspect", self.aspect)
-        arguments.number("tilt", self.tilt, "rad", low=-0.5 * math.pi, high=0.5 * math.pi)
+        arguments.bare_number("tilt", self.tilt, "rad", low=-0.5 * math.pi, high=0.5 * math.pi)
         signed("tilt_direction", self.tilt_direction, "rad")
         if self.distance is not None:
             positive("distance", self.distance, "px")
@@ -176,4 +176,4 @@ class Rig:
                 positive(name, number.value, unit)
         for name, unit in (("pulley_torque", "N.m"), ("compliance", "rad/(N.m)")):
             not_negative(name, getattr(self, name).value, unit)
-        arguments.number("pulley_share", self.pulley_share.value, brackets="[)", low=0.0, high=1.0)
+        arguments.bare_number("pulley_share", self.pulley_share.value, brackets="[)", low=0.0, high=1.0)

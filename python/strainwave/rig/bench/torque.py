@@ -406,7 +406,7 @@ def stiffness_budget(
       radius of the disk       0.002255  N·m/rad  0 %, common
       masses                  0.0022435  N·m/rad  0 %, random
     """
-    arguments.number("stiffness", stiffness, "N.m/rad", low=0.0)
+    stiffness = arguments.number("stiffness", stiffness, "N.m/rad", low=0.0)
     budgets = [torque_budget(rig, step, angle) for step in steps]
     torque = np.array([budget.value for budget in budgets])
     spread = sqrt(float(np.sum((torque - torque.mean()) ** 2))) if len(torque) else 0.0

@@ -125,7 +125,7 @@ def plan(
     >>> print(fine.remarks[0])
     0.36 N.m is no step of these masses: nearest are 0.3432 N.m (350 g) and 0.3677 N.m (375 g); planned is 0.3677 N.m.
     """
-    arguments.number("peak", peak, "N.m", low=0.0)
+    peak = arguments.number("peak", peak, "N.m", low=0.0)
     arguments.one_of("pans", pans, get_args(Pans))
     arguments.whole("cycles", cycles, 1)
     if not rig.masses:

@@ -90,8 +90,8 @@ def load_by_steps(
     ([0.0, 0.08, 0.18, 0.12, 0.02], [0.0, 0.1, 0.2, 0.1, 0.0])
     """
     arguments.gear(gear)
-    arguments.number("wait", wait, "s", brackets="[)", low=0.0)
-    arguments.number("settling", settling, "s", brackets="[)", low=0.0)
+    wait = arguments.number("wait", wait, "s", brackets="[)", low=0.0)
+    settling = arguments.number("settling", settling, "s", brackets="[)", low=0.0)
     if not steps:
         raise ValueError("steps: a test needs one step or more")
     states = _through(gear, rig, steps, virgin)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import strainwave as sw
-from strainwave.export.internal_step import internal_step
+from strainwave.export.host import internal_step
 
 STIFF = sw.friction.LuGre(
     coulomb=0.05, breakaway=0.07, stribeck_speed=2.0, bristle_stiffness=5e3, bristle_damping=5e-3, viscous=4e-4
