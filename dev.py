@@ -7,6 +7,7 @@
     python3 dev.py lint         check style, formatting and types
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
+    python3 dev.py workbench    build the page of `strainwave workbench`, kept unless its sources change
     python3 dev.py docs         build the documentation; it begins at out/docs/index.html
     python3 dev.py wheel        build a wheel for every machine of this kind into dist/, and try it where no compiler is
     python3 dev.py pin          write the exact versions of all dependencies anew, the newest that pyproject.toml allows
@@ -290,7 +291,14 @@ def bench(options: Sequence[str]) -> int:
     return attempt(PYTHON, "benchmarks/run.py", *options)
 
 
+def workbench(options: Sequence[str]) -> int:
+    prepare(["workbench"])
+    call(PYTHON, "src/workbench.py", BUILD / "workbench", ROOT / "python" / "strainwave" / "workbench" / "workbench.html")
+    return 0
+
+
 def docs(options: Sequence[str]) -> int:
+    workbench(())  # a page of the documentation
     prepare(["docs"])
     call(PYTHON, "docs/build.py", OUT / "docs", *options)
     say(f"the documentation begins at {OUT / 'docs' / 'index.html'}")
@@ -330,14 +338,14 @@ def complete(made: Path, python: Path) -> None:
 
 
 def pin(options: Sequence[str]) -> int:
-    groups = [word for group in ("build", "docs", "lint", "test") for word in ("--group", group)]
+    groups = [word for group in ("build", "docs", "lint", "test", "workbench") for word in ("--group", group)]
     plain = ("--no-header", "--no-annotate", "--no-emit-index-url", "--no-emit-find-links")
     everything = ("--universal", "--upgrade", "--all-extras", *groups)
     return attempt(uv(), "pip", "compile", "--quiet", "pyproject.toml", *everything, *plain, "-o", PINS, *options)
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, docs, wheel, pin)
+    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, workbench, docs, wheel, pin)
 }
 
 

@@ -21,6 +21,7 @@ import theory
 import tutorials
 from sphinx.cmd.build import main as sphinx
 from sphinx.util.inventory import InventoryFile
+from strainwave.workbench import page as workbench
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -56,6 +57,8 @@ def main(out: str) -> int:
     gather()
     shutil.rmtree(out, ignore_errors=True)
     code: int = sphinx(["--quiet", "--fail-on-warning", "--keep-going", "-d", str(SOURCE) + ".doctrees", str(SOURCE), out])
+    if workbench.is_installed():
+        shutil.copy(workbench.FILE, out)  # docs/how-to/workbench.md links it
     return code or unlisted(Path(out) / "objects.inv")
 
 

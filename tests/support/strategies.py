@@ -58,11 +58,11 @@ def suited(part: Any, kinematics: Any) -> Any:
 def modelled(gear: sw.Gear, kinematics: Any) -> sw.Gear:
     """The gear of a model with these kinematics; without its error, whose slope may be too steep for them."""
     parts = {name: suited(getattr(gear, name), kinematics) for name in SUITED}
-    rigid, springs = made(sw.stiffness.Linear), getattr(parts["hysteresis"], "springs", None)
-    if type(parts["stiffness"]) is sw.stiffness.MultiCompliance and abs(kinematics.ratio) < 1.0:
-        parts["stiffness"] = rigid  # that spring takes no reduction below 1
-    if type(springs) is sw.stiffness.MultiCompliance and abs(kinematics.ratio) < 1.0:
-        parts["hysteresis"] = parts["hysteresis"].replace(springs=rigid)
+    if abs(kinematics.ratio) < 1.0:  # MultiCompliance takes no reduction below 1
+        if type(parts["stiffness"]) is sw.stiffness.MultiCompliance:
+            parts["stiffness"] = made(sw.stiffness.Linear)
+        if hasattr(parts["hysteresis"], "springs"):
+            parts["hysteresis"] = sw.hysteresis.MaxwellSlip()
     return gear.replace(kinematics=kinematics, **(parts | {"kinematic_error": sw.kinematic_error.Fourier()}))
 
 

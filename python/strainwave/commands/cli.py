@@ -31,6 +31,7 @@ from strainwave.commands.plan import plan
 from strainwave.commands.predict import predict
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
+from strainwave.commands.workbench import workbench
 from strainwave.messages import one_line, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError, added_to
 
@@ -40,7 +41,14 @@ HEADINGS: dict[str, dict[str, Any]] = {
     "From measurements": {"identify": identify, "predict": predict, "orders": orders, "plan": plan, "rig": rig},
     "With a model": {"simulate": simulate, "compensate": compensate, "export": export, "compare": compare},
     "Faults": {"diagnose": diagnose, "dataset": dataset},
-    "Look and check": {"demo": demo, "list": list_command, "show": show, "docs": docs, "doctor": doctor},
+    "Look and check": {
+        "demo": demo,
+        "list": list_command,
+        "show": show,
+        "workbench": workbench,
+        "docs": docs,
+        "doctor": doctor,
+    },
 }
 WITH_COLUMNS = ("identify", "predict", "orders", "diagnose joint", "rig analyse")  # verbs with the options --column and --unit
 WITH_ALL_JOINTS = ("identify", "diagnose joint")

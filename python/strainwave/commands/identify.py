@@ -76,7 +76,7 @@ def _one_gear(
     files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
     write_folder(out, files)
     print("\n".join(identify_summary(found)))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(name for name in files if not name.endswith('.html'))}")
     if "gear.toml" in files:
         if lacking := not_written(found.files):
             print(f"gear.toml: {found.gear_set.name}, {lacking}")

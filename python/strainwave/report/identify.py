@@ -48,6 +48,7 @@ def identify_report(
     accepted: bool = False,
     folder: Path = Path(),
     remark: str = "",
+    workbench: str = "",
 ) -> str:
     """Return the report of an identification, as one HTML file that needs nothing else.
 
@@ -57,6 +58,7 @@ def identify_report(
         accepted: if true, the gear is written in spite of failed checks
         folder: that it is written into, as the commands of the page name it
         remark: a sentence for the box of failed checks
+        workbench: page beside it that draws the gear, by its name; empty if there is none
 
     Returns:
         HTML; the same for the same arguments
@@ -77,6 +79,7 @@ def identify_report(
             "numbers": numbers_by_source(found),
             "next": next_commands(found, folder) if accepted or not found.failed else [],
             "accepted": accepted,
+            "workbench": workbench,
             "refused": [(each.name, each.refused) for each in found.files if each.refused],
             "cards": [_card(each, anchors[id(each)]) for each in alone if not each.refused],
             "apart": [_apart(each, other) for each in found.parameters for other in each.contradicts],

@@ -22,11 +22,13 @@ from strainwave.report.identify import identify_report
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 from strainwave.report.results_json import results_json
+from strainwave.workbench import page as workbench
 
 COLUMNS = (
     "path", "law", "unit", "file", "value", "sigma", "taken", "same_measurement", "sigmas_apart", "contradicts",
     "state", "reason",
 )  # fmt: skip
+WORKBENCH = "workbench.html"
 MAX_REMARKS = 8  # of a file on a terminal; the report has all
 
 
@@ -39,6 +41,8 @@ def identify_files(
     remark: str = "",
 ) -> dict[str, str]:
     """Return the files of a result by their names: numbers as JSON and CSV, the gear, and the report.
+
+    If the workbench is installed, its page with the gear is among them.
 
     Args:
         found: the result
@@ -54,7 +58,11 @@ def identify_files(
     files = {"results.json": results_json(_results(found)), "numbers.csv": text.getvalue()}
     if accepted or not found.failed:
         files["gear.toml"] = gear_file.text(found.accepted)
-    return files | {"report.html": identify_report(found, provenance, accepted=accepted, folder=folder, remark=remark)}
+        if workbench.is_installed():
+            files[WORKBENCH] = workbench.page(found.accepted)
+    link = WORKBENCH if WORKBENCH in files else ""
+    report = identify_report(found, provenance, accepted=accepted, folder=folder, remark=remark, workbench=link)
+    return files | {"report.html": report}
 
 
 def _results(found: Identified) -> dict[str, Any]:

@@ -14,6 +14,7 @@ import typer
 from strainwave.commands.cli import HEADINGS, app
 from strainwave.commands.docs import documentation
 from strainwave.commands.help import summary
+from strainwave.workbench.page import is_installed
 
 from tests.python.command import strainwave
 
@@ -98,7 +99,7 @@ def test_every_example_runs(room: str, inputs: Path, tmp_path: Path) -> None:
     assert lines
     lines.sort(key=lambda line: FIRST.get(room, "") not in line)
     for line in lines:
-        if "--camera" in line or ("--path" in line and documentation() is None):
+        if "--camera" in line or ("--path" in line and documentation() is None) or (room == "workbench" and not is_installed()):
             continue  # needs a person, or pages that are not built
         done = strainwave(*shlex.split(line)[1:], folder=folder)
         assert done.returncode == 0, f"{line}: {done.stderr}"

@@ -27,6 +27,7 @@ from strainwave.report.identify import identify_report
 from strainwave.report.identify_files import failed_lines, identify_files
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
+from strainwave.workbench.page import BEGIN, END
 
 from tests.python.report.reading import Page, section
 from tests.support.samples import sample
@@ -154,6 +155,22 @@ def test_each_parameter_stands_with_its_file_the_start_set_and_the_others(page: 
     assert f"{gear_numbers(START.gear)[COULOMB][0]:.4g}" in row.text
     assert "cold.csv: 0.0800 ± 0.0020 (13 σ apart, not counted)" in row.text
     assert "1 more of the same measurement" in row.text
+
+
+@pytest.mark.slow("report")
+def test_the_gear_is_in_the_workbench_beside_the_report_if_that_is_installed(
+    found: Identified, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asset, link = tmp_path / "workbench.html", 'href="workbench.html"'
+    monkeypatch.setattr("strainwave.workbench.page.FILE", asset)
+    files = identify_files(found, accepted=True)
+    assert "workbench.html" not in files
+    assert link not in files["report.html"]
+    asset.write_text(f"<p>before</p>{BEGIN}{{}}{END}<p>after</p>")
+    files = identify_files(found, accepted=True)
+    before, _, content = files["workbench.html"].partition(BEGIN)
+    assert (before, json.loads(content.removesuffix(f"{END}<p>after</p>"))["name"]) == ("<p>before</p>", found.accepted.name)
+    assert link in files["report.html"]
 
 
 def test_parameters_are_grouped_by_effect(page: str) -> None:

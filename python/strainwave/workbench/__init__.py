@@ -1,0 +1,1 @@
+"""The workbench: one page that shows a gear in a browser, without a server."""

@@ -1,0 +1,130 @@
+"""The page of the workbench with a gear inside.
+
+`python3 dev.py workbench` builds the page, and wheels contain it. It is one file that needs nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from strainwave import Drive, Gear, control, loads, motor
+from strainwave.files.gear_set import GearSet, catalogue
+from strainwave.workbench.schema import values_of
+
+FILE = Path(__file__).parent / "workbench.html"
+MISSING = "the workbench is not installed: a wheel contains it, and python3 dev.py workbench builds it in a clone"
+BEGIN, END = '<script type="application/json" id="gear">', "</script>"
+FIRST_GEAR = "csg-20-100"  # of a page without a gear of its own: it has a rated torque
+TRAVEL_SHARE = 0.3  # of the rated torque: travel of the loop at first
+TORQUE_OF_STIFFNESS = 1e-3  # rad of twist: travel of the loop at first of a gear without rating
+BANDWIDTH_SHARE = 0.2  # of the natural frequency of the load on the gear's spring: bandwidth of the assumed controller
+MIN_INERTIA = 1e-6  # kg.m2 of the assumed rotor
+
+
+def is_installed() -> bool:
+    """True if the page was built."""
+    return FILE.is_file()
+
+
+def page(gear_set: GearSet | None = None) -> str:
+    """Return the page with a gear inside, as one HTML file.
+
+    Raises:
+        FileNotFoundError: the page was not built
+    """
+    if not is_installed():
+        raise FileNotFoundError(MISSING)
+    before, _, rest = FILE.read_text("utf-8").partition(BEGIN)
+    return before + BEGIN + embedded(start_of(gear_set or GearSet.read(FIRST_GEAR))) + END + rest.partition(END)[2]
+
+
+def embedded(data: Any) -> str:
+    """Return data as JSON that no text in it can end before its element does."""
+    return json.dumps(data, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+def start_of(gear_set: GearSet) -> dict[str, Any]:
+    """Return what the page begins with: the gear in a drive, what it is loaded with, and the sources of its numbers."""
+    sources = {path: entry.source for path, entry in gear_set.sources.items()}
+    return _entry(gear_set) | {"parts": list(_own_parts(gear_set)), "sources": sources}
+
+
+def entries() -> dict[str, Any]:
+    """Return the gears of the catalogue, by their names."""
+    return {name: _entry(GearSet.read(name)) for name in catalogue()}
+
+
+def _entry(gear_set: GearSet) -> dict[str, Any]:
+    return {
+        "name": gear_set.name,
+        "drive": changed(drive_around(gear_set)),
+        "travel": {"by": "torque", "torque": first_torque(gear_set)},
+        "rated": rated_torque(gear_set),
+    }
+
+
+def rated_torque(gear_set: GearSet) -> float | None:
+    """Return the rated torque [N.m]; None if it is not known."""
+    rating = gear_set.ratings.get("rated_torque")
+    return None if rating is None else rating.to("N.m").value
+
+
+def first_torque(gear_set: GearSet) -> float:
+    """Return a travel [N.m] at which the loop of a gear shows."""
+    if (rated := rated_torque(gear_set)) is not None:
+        return TRAVEL_SHARE * rated
+    return float(f"{abs(float(gear_set.gear.stiffness.torque(TORQUE_OF_STIFFNESS))):.2g}") or 1.0
+
+
+def drive_around(gear_set: GearSet) -> Drive:
+    """Return the drive of a set; what it lacks is assumed.
+
+    The load has the inertia of rotor and wave generator, referred to the output. The controller is a PID of the input angle
+    whose bandwidth lies well below the resonance of the load on the gear.
+    """
+    gear = gear_set.gear
+    own = _own_parts(gear_set)
+    return Drive(gear=gear, **(own if {"motor", "control", "load"} <= own.keys() else own | _assumed(gear)))
+
+
+def _own_parts(gear_set: GearSet) -> dict[str, Any]:
+    """Return the parts of a drive, besides the gear, that a set has."""
+    names = [field["name"] for field in Drive.fields if field["name"] != "gear"]
+    return {name: part for name in names if (part := getattr(gear_set, name)) is not None}
+
+
+def _assumed(gear: Gear) -> dict[str, Any]:
+    rotor = max(gear.input_inertia, MIN_INERTIA)
+    inertia = rotor + gear.input_inertia
+    load = inertia * gear.kinematics.ratio**2
+    stiffness = float(gear.stiffness.torque(TORQUE_OF_STIFFNESS)) / TORQUE_OF_STIFFNESS
+    rate = BANDWIDTH_SHARE * (stiffness / load) ** 0.5  # rad/s
+    proportional = 2.0 * inertia * rate**2
+    return {
+        "motor": motor.TorqueSource(inertia=rotor),
+        "load": loads.Inertia(inertia=load),
+        "control": control.PID(
+            proportional=proportional,
+            integral=0.2 * rate * proportional,
+            derivative=4.0 * inertia * rate,
+            limit=abs(gear.kinematics.ratio) * proportional,  # for an error of one radian at the output
+        ),
+    }
+
+
+def changed(model: Any) -> dict[str, Any]:
+    """Return the parameters of a model without those that have their default, which the page fills in.
+
+    >>> changed(Gear(damping=2.0))
+    {'damping': 2.0}
+    """
+    values = values_of(model)
+    for field in model.fields:
+        name, value = field["name"], getattr(model, field["name"])
+        if value == field["default"] and not field["follows"]:
+            del values[name]
+        elif field["kind"] == "part":
+            values[name] = ({"model": value.name} if field["options"] else {}) | changed(value)
+    return values

@@ -1,0 +1,410 @@
+// The page: state, history, plots and exports.
+
+const MAX_UNDO = 200;
+const SLOW_RUN = 14; // ms: a run that takes longer waits until the hand rests
+const REST = 120; // ms
+const MAX_MEASURED = 20000; // points
+const EFFECT = 1.1; // factor of a number whose effect is shown
+const OUTPUTS = { "output angle": [3, "angle"], twist: [5, "angle"], "transmission error": [7, "angle"], torque: [8, "torque"], "input speed": [2, "speed"], "output speed": [4, "speed"] };
+const SIGNS = { "N.m": "N·m", "mN.m": "mN·m", "kgf.m": "kgf·m", "kgf.cm": "kgf·cm" };
+
+const by = (id) => document.getElementById(id);
+const dataIn = (id) => JSON.parse(by(id).textContent);
+
+const VIEW = {
+  units: { angle: "arcmin", speed: "rpm", torque: "N.m" },
+  travel: { by: "torque", torque: 10, twist: 1e-3, history: "closed loop" },
+  friction: { maxSpeed: 210, speed: 52.4, angle: 0, load: 0, temperature: ROOM_TEMPERATURE },
+  run: { command: "step", amplitude: 0.1, frequency: 2, duration: 0.5, load: 0, shown: "output angle" },
+  effect: "loop width",
+};
+
+/** A view from a link: numbers, names and flags of the kinds that VIEW has; all else is left out. */
+function viewFrom(given, like = VIEW) {
+  return Object.fromEntries(Object.entries(like).map(([key, value]) => {
+    const other = given?.[key];
+    if (typeof value === "object") return [key, viewFrom(other, value)];
+    return [key, typeof other === typeof value && (typeof other !== "number" || Number.isFinite(other)) ? other : value];
+  }));
+}
+
+/** A function of the sets of a drive whose result several plots of one frame share. */
+function sharedByPlots(of) {
+  const known = new WeakMap();
+  return (sets) => {
+    if (!known.has(sets)) known.set(sets, of(sets));
+    return known.get(sets);
+  };
+}
+
+class Workbench {
+  constructor(core, schema, catalogue, start) {
+    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
+    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom({ travel: start.travel }) };
+    this.saved = this.state;
+  }
+  // ---- State ---------------------------------------------------------------------------------------------------------
+  get view() { return this.state.view; }
+  change(state, done, rebuild = false) {
+    this.state = state;
+    if (done) {
+      if (!sameValues(this.saved, state)) { this.past.push(this.saved); if (this.past.length > MAX_UNDO) this.past.shift(); this.future = []; }
+      this.saved = state;
+    }
+    if (rebuild) this.form.build();
+    this.draw();
+  }
+  setDrive(path, value, done, rebuild) { this.change({ ...this.state, drive: replaced(this.state.drive, path, value) }, done, rebuild); }
+  setView(path, value, rebuild) { this.change({ ...this.state, view: replaced(this.view, path, value) }, true, rebuild); }
+  travelBack(from, to) {
+    if (!from.length) return;
+    to.push(this.saved);
+    this.state = this.saved = from.pop();
+    this.showAll();
+  }
+  showAll() {
+    by("name").value = this.state.name;
+    this.form.build();
+    this.buildControls();
+    this.draw();
+  }
+  // ---- Units ---------------------------------------------------------------------------------------------------------
+  /** Factor to SI and text of the user's unit of a quantity. */
+  unit(of) {
+    const name = this.view.units[of];
+    return { factor: this.schema.units[of][name] ?? 1, text: SIGNS[name] ?? name };
+  }
+  unitOf(unit) {
+    const { angle, speed, torque } = { angle: this.unit("angle"), speed: this.unit("speed"), torque: this.unit("torque") };
+    if (unit === "rad") return angle;
+    if (unit === "rad/s") return speed;
+    if (unit === "N.m") return torque;
+    if (unit === "N.m/rad") return { factor: torque.factor / angle.factor, text: `${torque.text}/${angle.text}` };
+    return { factor: 1, text: unit === "1" || !unit ? "" : unit.replaceAll(".", "·").replace(/([a-zA-Z)])(\d)/g, (_, letter, power) => letter + "⁰¹²³⁴⁵⁶⁷⁸⁹"[power]) };
+  }
+  say(text, bad = false) { by("status").textContent = text; by("status").classList.toggle("bad", bad); }
+  // ---- Drawing -------------------------------------------------------------------------------------------------------
+  draw() {
+    by("undo").disabled = !this.past.length;
+    by("redo").disabled = !this.future.length;
+    by("swap").disabled = by("forget").disabled = !this.other;
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => { this.waiting = false; this.drawNow(); });
+  }
+  drawNow() {
+    const begin = performance.now();
+    this.sets = setsOf(this.schema, this.state.drive);
+    this.otherSets = this.other && setsOf(this.schema, this.other.drive);
+    let problem = "";
+    for (const card of this.cards) if (!card.slow) problem ||= this.drawCard(card);
+    if (problem || this.problem) this.say(problem, Boolean(problem));
+    this.problem = problem;
+    const run = this.cards.find((card) => card.slow);
+    clearTimeout(this.later);
+    if ((this.runTime ?? 0) < SLOW_RUN && !problem) this.drawRun(run);
+    else this.later = setTimeout(() => this.drawRun(run), REST);
+    this.frame = performance.now() - begin;
+    clearTimeout(this.rested);
+    this.rested = setTimeout(() => { this.form.refreshAll(); this.showEffects(); this.remember(); }, REST);
+  }
+  drawRun(card) {
+    const begin = performance.now();
+    this.drawCard(card);
+    this.runTime = performance.now() - begin;
+  }
+  /** Draws a plot; returns why it cannot be drawn. */
+  drawCard(card) {
+    try {
+      const pieces = [card.of(this.sets, "one")];
+      if (this.otherSets) { try { pieces.push(card.of(this.otherSets, "other")); } catch { /* the kept gear does not reach this */ } }
+      card.pieces = pieces;
+      const measured = this.measured[card.key];
+      const curves = pieces.flatMap(({ curves }) => curves).reverse();
+      if (measured) curves.unshift({ x: measured.x.map((value) => value / card.axes()[0].factor), y: measured.y.map((value) => value / card.axes()[1].factor), colour: "--data", mark: "point" });
+      card.plot.show(card.axes().map(({ label }) => label), curves);
+      const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? `${this.other.name}: ` : "", ...numbers.flatMap(([label, text], k) => [`${k ? ", " : ""}${label} `, element("b", {}, text)])));
+      if (measured) read.push(element("span", { className: "measured" }, "measured: ", element("b", {}, card.residual(measured)), " "), this.button("Fit", () => this.fit(card)));
+      card.numbers.replaceChildren(...read);
+      card.element.querySelector(".canvas").setAttribute("aria-label", `${card.title}: ${card.numbers.textContent}`);
+      return "";
+    } catch (error) {
+      if (error instanceof WebAssembly.RuntimeError) this.core.begin();
+      card.numbers.replaceChildren(element("span", { className: "problem" }, error.message));
+      card.plot.show(card.axes().map(({ label }) => label), []);
+      return error.message;
+    }
+  }
+  scaled(curve, axes, more) {
+    const scale = (list, { factor }) => Float64Array.from(list, (value) => value / factor);
+    return { x: scale(curve.x, axes[0]), y: scale(curve.y, axes[1]), ...more };
+  }
+  // ---- The plots -----------------------------------------------------------------------------------------------------
+  makeCards() {
+    const axis = (label, of) => ({ label: `${label} [${of.text}]`, factor: of.factor });
+    const degrees = { text: "°", factor: Math.PI / 180 };
+    const look = (which) => ({ colour: which === "one" ? "--one" : "--other", dash: which !== "one" });
+    const text = (value, of) => `${shortText(value / of.factor)} ${of.text}`;
+    const perAngle = () => this.unitOf("N.m/rad");
+    const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
+    const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
+    const output = () => OUTPUTS[this.view.run.shown] ?? OUTPUTS["output angle"];
+    const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
+    return [
+      card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
+        const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
+        return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
+          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`]] };
+      }, { takes: true, fits: ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
+        const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
+        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
+      } }),
+      card("stiffness", "Stiffness over torque", () => [axis("torque", this.unit("torque")), axis("stiffness", perAngle())], (sets, which, axes) => {
+        const loop = turnLoop(sets), slopes = slopesOfLoop(loop), top = slopes.y.filter(Number.isFinite);
+        return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
+      }),
+      card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
+        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs));
+        const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
+        if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
+        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : [])] };
+      }, { slow: true, controls: () => this.runControls() }),
+      card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
+        const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
+        return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))}`, text(at, this.unit("torque"))]] };
+      }, { takes: true, fits: ["friction_input"], controls: () => this.numberControls("friction", [["maxSpeed", "up to", "speed"], ["load", "load", "torque"], ["temperature", "temperature [K]", ""]]), residual: (measured) => {
+        const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
+        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
+      } }),
+      card("angle", "Friction over a turn", () => [axis("input angle", degrees), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
+        const curve = frictionOverAngle(this.core, sets, this.view.friction), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
+        return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("torque"))]] };
+      }, { controls: () => this.numberControls("friction", [["speed", "at", "speed"]]) }),
+      card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
+        const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
+        return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("angle"))]] };
+      }),
+      card("orders", "Orders of the error", () => [{ label: "periods a turn of the input", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
+        const curve = ordersOf(turnError(sets)), most = Math.max(...curve.y);
+        return { curves: [this.scaled({ x: [...curve.x, NaN], y: [...curve.y, 0] }, axes, { ...look(which), mark: "bar" })],
+          numbers: [["largest", most > 0 ? `${text(most, this.unit("angle"))} of order ${curve.x[curve.y.indexOf(most)]}` : "none"]] };
+      }),
+    ];
+  }
+  buildCards() {
+    this.cards = this.makeCards();
+    by("plots").replaceChildren(...this.cards.map((card) => {
+      const canvas = element("div", { className: "canvas", role: "img" });
+      card.at = element("small", { className: "at" });
+      card.numbers = element("p", { className: "numbers" });
+      card.bar = element("div", { className: "controls" });
+      const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png()))];
+      if (card.takes) save.unshift(this.button("Data…", () => this.askMeasured(card)));
+      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h2", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
+      canvas.append(card.at);
+      if (card.takes) {
+        card.element.ondragover = (event) => { event.preventDefault(); card.element.classList.add("over"); };
+        card.element.ondragleave = () => card.element.classList.remove("over");
+        card.element.ondrop = async (event) => { event.preventDefault(); card.element.classList.remove("over"); if (event.dataTransfer.files[0]) this.takeMeasured(card, await event.dataTransfer.files[0].slice(0, 1 << 23).text()); };
+      }
+      return card.element;
+    }));
+    for (const card of this.cards)
+      card.plot = new Plot(card.element.querySelector(".canvas"), (x, y) => { card.at.textContent = x === null ? "" : `${shortText(x)}, ${shortText(y)}`; });
+    this.buildControls();
+  }
+  buildControls() {
+    for (const card of this.cards) card.bar.replaceChildren(...(card.controls?.() ?? []));
+    by("units").replaceChildren(...Object.entries(this.schema.units).map(([of, names]) => {
+      const menu = select(Object.keys(names), this.view.units[of], { "aria-label": `unit of ${of}` });
+      menu.onchange = () => { this.setView(["units", of], menu.value, true); this.buildControls(); };
+      return menu;
+    }));
+    by("effect").value = this.view.effect;
+  }
+  button(text, act) { const made = element("button", { type: "button" }, text); made.onclick = act; return made; }
+  choice(path, options, label) {
+    const menu = select(options, valueAt(this.view, path), { "aria-label": label });
+    menu.onchange = () => { this.setView(path, menu.value); this.buildControls(); };
+    return menu;
+  }
+  numberControls(group, rows) {
+    return rows.map(([name, label, of]) => {
+      const { factor, text } = of ? this.unit(of) : { factor: 1, text: "" };
+      const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
+      input.onchange = () => {
+        const value = Number(input.value.replace(",", ".")) * factor;
+        if (input.value.trim() !== "" && Number.isFinite(value)) this.setView([group, name], value);
+        else this.say(`${label}: ${input.value} is no number`, true);
+      };
+      return element("label", {}, `${label} `, input, ` ${text}`);
+    });
+  }
+  travelControls() {
+    const wanted = this.view.travel.by === "torque" ? ["torque", "±", "torque"] : ["twist", "±", "angle"];
+    const made = [this.choice(["travel", "history"], Object.keys(HISTORIES), "history of the twist"), this.choice(["travel", "by"], ["torque", "twist"], "travel given by"), ...this.numberControls("travel", [wanted])];
+    if (this.start.rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / this.start.rated, 3)} % of rated torque`);
+    return made;
+  }
+  runControls() {
+    const { command } = this.view.run;
+    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", ""], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
+      this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
+  }
+  // ---- Effects -------------------------------------------------------------------------------------------------------
+  get measures() {
+    return {
+      "loop width": (sets) => numbersOfLoop(loopOf(this.core, sets, this.view.travel)).width,
+      "mean stiffness": (sets) => numbersOfLoop(loopOf(this.core, sets, this.view.travel)).stiffness,
+      "friction at speed": (sets) => frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0],
+      "kinematic error": (sets) => { const { y } = errorOverTurn(this.core, sets); return Math.max(...y) - Math.min(...y); },
+    };
+  }
+  /** Beside each number of the gear: the change of the chosen measure if it grows by 10 %. */
+  showEffects() {
+    const measure = this.measures[this.view.effect] ?? this.measures["loop width"], { gear } = this.sets;
+    let now = NaN;
+    try { now = measure(this.sets); } catch { /* said where it is drawn */ }
+    gear.paths.forEach((path, i) => {
+      const row = this.form.rows.get(["gear", ...keysOf(path)].join("."));
+      if (!row) return;
+      let change = NaN;
+      if (gear.numbers[i] !== 0 && now !== 0) {
+        const numbers = [...gear.numbers];
+        numbers[i] *= EFFECT;
+        try { change = measure({ gear: { ...gear, numbers } }) / now - 1; } catch { /* 10 % more is not allowed */ }
+      }
+      const shown = Math.abs(change) > 5e-5;
+      row.effect.textContent = shown ? `${change > 0 ? "+" : "−"}${shortText(Math.abs(100 * change), 2)} %` : "";
+      row.effect.classList.toggle("strong", shown && Math.abs(change) > 0.02);
+    });
+  }
+  // ---- Measured data -------------------------------------------------------------------------------------------------
+  askMeasured(card) {
+    const [across, up] = card.axes();
+    this.ask(`Measured data: ${across.label}, ${up.label}, a line each`, "", (text) => this.takeMeasured(card, text), "Two columns, separated by comma, semicolon, tab or blanks. Empty removes them. A file can be dropped on the plot.");
+  }
+  takeMeasured(card, text) {
+    try {
+      if (text.trim() === "") delete this.measured[card.key];
+      else {
+        const [across, up] = card.axes(), { x, y } = twoColumns(text, MAX_MEASURED);
+        this.measured[card.key] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
+      }
+      this.draw();
+    } catch (error) { this.say(`measured data: ${error.message}`, true); }
+  }
+  /** Fits the numbers of the parts that a plot shows to its measured data. */
+  fit(card) {
+    const { x, y } = this.measured[card.key], { gear } = this.sets, begin = performance.now();
+    const places = gear.paths.flatMap((path, i) => (card.fits.includes(path.split(".")[0]) && ["number", "sequence"].includes(gear.fields[i].kind) ? [i] : []));
+    const filled = (value) => new Float64Array(x.length).fill(value), { angle, load, temperature } = this.view.friction;
+    const [verb, points] = card.key === "loop" ? ["loop_slopes", x] : ["friction", [x, filled(angle), filled(load), filled(temperature)]];
+    try {
+      const found = fitted((numbers, free) => this.core.slopes(verb, { ...gear, numbers }, points, free), gear.numbers, gear.fields, places, y);
+      let { drive } = this.state;
+      places.forEach((place) => { drive = replaced(drive, ["gear", ...keysOf(gear.paths[place])], found.numbers[place]); });
+      this.change({ ...this.state, drive }, true, true);
+      this.say(`${found.free} numbers fitted in ${found.iterations} iterations and ${Math.round(performance.now() - begin)} ms; strainwave identify gives their standard deviations`);
+    } catch (error) { this.say(`the fit failed: ${error.message}`, true); }
+  }
+  // ---- Texts and files -----------------------------------------------------------------------------------------------
+  ask(title, content, use, hint = "") {
+    by("text-title").textContent = title;
+    Object.assign(by("text-content"), { value: content, placeholder: hint, readOnly: !use });
+    by("text-use").hidden = !use;
+    by("text-use").onclick = () => { by("text").close(); use(by("text-content").value); };
+    by("text").showModal();
+  }
+  download(name, content) {
+    const link = element("a", { href: URL.createObjectURL(content instanceof Blob ? content : new Blob([content], { type: "text/plain" })), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+  saveCsv(card) {
+    const [across, up] = card.axes(), lines = [`curve,${across.label},${up.label}`];
+    card.pieces.forEach(({ curves }, i) => curves.forEach(({ x, y }) => x.forEach((value, k) => { if (Number.isFinite(value + y[k])) lines.push(`${i ? "kept" : "now"},${value},${y[k]}`); })));
+    this.download(`${card.key}.csv`, `${lines.join("\n")}\n`);
+  }
+  toml() {
+    const original = flattened(this.schema, "Drive", completed(this.schema, "Drive", this.start.drive)), before = new Map(original.paths.map((path, i) => [path, original.numbers[i]]));
+    const now = flattened(this.schema, "Drive", this.state.drive), values = new Map(now.paths.map((path, i) => [path, now.numbers[i]]));
+    const sourceOf = (path) => (before.get(path) === values.get(path) && this.sources[path]) || "set in the workbench";
+    return gearToml(this.schema, this.state.name || "gear", this.state.drive, this.start.parts ?? [], sourceOf);
+  }
+  python() {
+    const { travel, friction, run } = this.view, { drive } = this.state;
+    const turns = HISTORIES[travel.history].map((share) => share * travel[travel.by]);
+    return [
+      "import numpy as np", "import strainwave as sw", "", `gear = ${pythonOf(this.schema, "Gear", drive.gear)}`, "",
+      travel.by === "torque" ? `turns = gear.twist(np.array([${turns.map(floatText).join(", ")}]))  # rad, where the path turns round` : `turns = np.array([${turns.map(floatText).join(", ")}])  # rad, where the path turns round`,
+      "ends = np.concatenate([[0.0], turns])",
+      `twist = np.concatenate([[0.0], *(np.linspace(a, b, ${PER_STRETCH + 1})[1:] for a, b in zip(ends, ends[1:]))])`,
+      "torque = gear.trace(twist)  # N.m", "",
+      `speed = np.linspace(${floatText(friction.maxSpeed / 200)}, ${floatText(friction.maxSpeed)}, 200)  # rad/s`,
+      `friction = gear.friction_input.steady(speed, load=${floatText(friction.load)}, temperature=${floatText(friction.temperature)})  # N.m`,
+      `angle = np.linspace(0.0, 2.0 * np.pi, ${TURN_POINTS + 1})`, "error = gear.kinematic_error.error(angle)  # rad", "",
+      `drive = ${pythonOf(this.schema, "Drive", drive).replace(/gear=sw\.Gear\((?:\n.*?\n {4}|[^\n]*?)\)(?=,\n|\)|,)/s, "gear=gear")}`,
+      `command = sw.scenario.${run.command}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
+      `run = sw.simulate(drive, command${run.load ? `, load_torque=${floatText(run.load)}` : ""})`, `run[${JSON.stringify(run.shown.replaceAll(" ", "_"))}]`, "",
+    ].join("\n");
+  }
+  async remember() {
+    const { name, drive, view } = this.state;
+    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view }))}`);
+  }
+  async open(fragment) {
+    const given = await fromFragment(fragment);
+    this.change({ name: String(given.name ?? "").slice(0, 80), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(given.view) }, true);
+    this.showAll();
+  }
+  // ---- Begin ---------------------------------------------------------------------------------------------------------
+  begin() {
+    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change));
+    by("effect").replaceChildren(...Object.keys(this.measures).map((name) => element("option", { value: name }, name)));
+    this.buildCards();
+    by("effect").onchange = () => this.setView(["effect"], by("effect").value);
+    by("name").onchange = () => this.change({ ...this.state, name: by("name").value.replace(/[\r\n]/g, " ") }, true);
+    by("catalogue").append(...Object.keys(this.catalogue).map((name) => element("option", { value: name }, name)));
+    by("catalogue").onchange = () => {
+      const chosen = this.catalogue[by("catalogue").value];
+      by("catalogue").value = "";
+      if (!chosen) return;
+      this.change({ ...this.state, name: chosen.name, drive: completed(this.schema, "Drive", chosen.drive), view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } } }, true);
+      this.start.rated = chosen.rated;
+      this.showAll();
+    };
+    by("undo").onclick = () => this.travelBack(this.past, this.future);
+    by("redo").onclick = () => this.travelBack(this.future, this.past);
+    by("keep").onclick = () => { this.other = { name: this.state.name || "kept", drive: this.state.drive }; this.draw(); };
+    by("forget").onclick = () => { this.other = null; this.draw(); };
+    by("swap").onclick = () => { const { drive, name } = this.other; this.other = { name: this.state.name, drive: this.state.drive }; this.change({ ...this.state, drive, name }, true); this.showAll(); };
+    by("link").onclick = async () => {
+      await this.remember();
+      try { await navigator.clipboard.writeText(location.href); this.say("link copied"); } catch { this.ask("Link", location.href); }
+    };
+    by("toml").onclick = () => this.download("gear.toml", this.toml());
+    by("python").onclick = () => this.ask("Python that computes these curves", this.python());
+    by("text-close").onclick = () => by("text").close();
+    by("text-copy").onclick = () => { by("text-content").select(); navigator.clipboard?.writeText(by("text-content").value).catch(() => {}); };
+    addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || ["INPUT", "TEXTAREA"].includes(document.activeElement?.tagName)) return;
+      event.preventDefault();
+      (event.shiftKey ? by("redo") : by("undo")).click();
+    });
+    addEventListener("hashchange", () => { const fragment = location.hash.slice(1); if (fragment && fragment !== this.fragment) this.openOrSay(fragment); });
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    this.showAll();
+  }
+  openOrSay(fragment) { return this.open(fragment).catch((error) => this.say(`the link cannot be read: ${error.message}`, true)); }
+}
+
+async function start() {
+  const core = await Core.of(await through(fromBase64(dataIn("wasm")), new DecompressionStream("gzip"), 1 << 24));
+  const workbench = new Workbench(core, dataIn("schema"), dataIn("gears"), dataIn("gear")), fragment = location.hash.slice(1);
+  workbench.begin();
+  if (fragment) await workbench.openOrSay(fragment);
+  return workbench;
+}
+if (typeof document !== "undefined")
+  window.workbench = start().catch((error) => { by("status").textContent = `the workbench did not start: ${error.message}`; throw error; });

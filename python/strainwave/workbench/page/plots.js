@@ -1,0 +1,97 @@
+// One plot: axes and grid by uPlot, curves drawn here, since uPlot draws only curves whose x rises and a loop's does not.
+
+const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** A number of a reading, to so many digits. */
+function shortText(value, digits = 4) {
+  if (!Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  return size >= 1e6 || size < 1e-3 ? value.toExponential(digits - 1).replace(/\.?0+e/, "e") : String(Number(value.toPrecision(digits)));
+}
+
+/** The smallest range of the finite numbers of several lists, a little wider. */
+function rangeOf(lists) {
+  let low = Infinity, high = -Infinity;
+  for (const list of lists)
+    for (const value of list) if (Number.isFinite(value)) { if (value < low) low = value; if (value > high) high = value; }
+  if (!(low <= high)) return [-1, 1];
+  const around = high > low ? 0.04 * (high - low) : Math.abs(high) * 0.1 || 1;
+  return [low - around, high + around];
+}
+
+class Plot {
+  /** `onCursor(x, y)` is called as the pointer moves over the plot, with null as it leaves. */
+  constructor(element, onCursor) {
+    Object.assign(this, { element, onCursor });
+    this.curves = [];
+    this.labels = ["", ""];
+    this.make();
+    new ResizeObserver(() => this.plot.setSize(this.size())).observe(element);
+  }
+  size() { return { width: Math.max(200, this.element.clientWidth), height: this.element.clientHeight }; }
+  make() {
+    this.plot?.destroy();
+    const axis = (index) => ({
+      stroke: () => style("--ink"), grid: { stroke: () => style("--grid"), width: 1 }, ticks: { stroke: () => style("--grid"), width: 1 },
+      font: "12px system-ui", labelFont: "12px system-ui", label: () => this.labels[index], labelSize: 20, size: index ? 62 : 34,
+      values: (_, splits) => splits.map((value) => shortText(Math.abs(value) < 1e-12 * Math.abs(splits.at(-1) - splits[0]) ? 0 : value)),
+    });
+    const scale = () => ({ time: false, auto: false, range: (_, low, high) => [low, high] });
+    this.plot = new uPlot({
+      ...this.size(), legend: { show: false }, padding: [8, 8, 0, 0],
+      cursor: { drag: { x: false, y: false }, points: { show: false }, focus: { prox: -1 } },
+      scales: { x: scale(), y: scale() }, axes: [axis(0), { ...axis(1), scale: "y" }], series: [{}, { scale: "y", points: { show: false } }],
+      hooks: { draw: [(plot) => this.drawCurves(plot)], setCursor: [({ cursor, posToVal }) => (cursor.left >= 0 ? this.onCursor(posToVal(cursor.left, "x"), posToVal(cursor.top, "y")) : this.onCursor(null))] },
+    }, [[0, 1], [null, null]], this.element);
+  }
+  /** `curves`: [{x, y, colour, dash, mark}] in the units of the axes. */
+  show(labels, curves) {
+    this.labels = labels;
+    this.curves = curves;
+    const plot = this.plot, [xLow, xHigh] = rangeOf(curves.map((curve) => curve.x)), [yLow, yHigh] = rangeOf(curves.map((curve) => curve.y));
+    plot.batch(() => {
+      plot.setScale("x", { min: xLow, max: xHigh });
+      plot.setScale("y", { min: yLow, max: yHigh });
+      plot.redraw(false, true);
+    });
+  }
+  drawCurves(plot) {
+    const { ctx, bbox } = plot, ratio = devicePixelRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    const { x: across, y: up } = plot.scales;
+    const toX = bbox.width / (across.max - across.min), toY = bbox.height / (up.max - up.min);
+    for (const { x, y, colour, dash, mark } of this.curves) {
+      ctx.beginPath();
+      ctx.strokeStyle = ctx.fillStyle = style(colour);
+      ctx.lineWidth = 1.7 * ratio;
+      ctx.setLineDash(dash ? [6 * ratio, 4 * ratio] : []);
+      let pen = false;
+      for (let i = 0; i < x.length; i++) {
+        const px = bbox.left + (x[i] - across.min) * toX, py = bbox.top + (up.max - y[i]) * toY;
+        if (!Number.isFinite(px + py)) { pen = false; continue; }
+        if (mark === "point") { ctx.rect(px - ratio, py - ratio, 2 * ratio, 2 * ratio); continue; }
+        if (mark === "bar") { ctx.moveTo(px, bbox.top + up.max * toY); ctx.lineTo(px, py); continue; }
+        if (pen) ctx.lineTo(px, py); else ctx.moveTo(px, py);
+        pen = true;
+      }
+      if (mark === "bar") ctx.lineWidth = (dash ? 2 : 5) * ratio;
+      if (mark === "point") ctx.fill(); else ctx.stroke();
+    }
+    ctx.restore();
+  }
+  /** The picture as PNG on the colour of the page. */
+  png() {
+    const from = this.plot.ctx.canvas, to = document.createElement("canvas");
+    to.width = from.width;
+    to.height = from.height;
+    const ctx = to.getContext("2d");
+    ctx.fillStyle = style("--paper");
+    ctx.fillRect(0, 0, to.width, to.height);
+    ctx.drawImage(from, 0, 0);
+    return new Promise((done) => to.toBlob(done, "image/png"));
+  }
+}

@@ -1,0 +1,82 @@
+// Runs scripts of the page in node: node in_node.js SCRIPTS PAGE < cases.json. A case is a task with its data; results go out as
+// JSON, numbers as the bytes of doubles.
+"use strict";
+const { readFileSync } = require("node:fs");
+const { gunzipSync } = require("node:zlib");
+const { runInThisContext } = require("node:vm");
+
+const [scripts, page] = process.argv.slice(2);
+runInThisContext(`${["model", "core", "curves", "fit"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
+const bytesOf = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64");
+
+const TASKS = {
+  /** Laws, whole numbers, numbers and paths of drives, and texts of their gears. */
+  flatten: ({ schema, drives }) => drives.map((given) => {
+    const drive = completed(schema, "Drive", given), parts = flattened(schema, "Drive", drive);
+    return { ...parts, fields: undefined, numbers: bytesOf(parts.numbers), values: drive, python: pythonOf(schema, "Drive", drive), toml: gearToml(schema, "made", drive, ["motor", "control", "load", "sensors", "thermal", "meter"], () => "a test") };
+  }),
+  refuse: ({ schema, given }) => given.map((each) => { try { completed(schema, "Drive", each); return ""; } catch (error) { return error.message; } }),
+  link: async ({ data, texts }) => [await fromFragment(await toFragment(data)), ...(await Promise.all(texts.map((text) => fromFragment(text).catch((error) => String(error.message)))))],
+  columns: ({ texts }) => texts.map((text) => { try { const { x, y } = twoColumns(text, 5); return [[...x], [...y]]; } catch (error) { return error.message; } }),
+  /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
+  compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {
+    const sets = setsOf(schema, completed(schema, "Drive", given));
+    const verbs = {
+      loop: () => core.over("loop", sets.gear, twist),
+      friction: () => core.over("friction", sets.gear, [speed, angle, load, temperature], 1, 0),
+      error: () => core.over("error", sets.gear, angle, 2),
+      spring: () => core.over("spring", sets.gear, twist, 2),
+      run: () => { const { code, rows } = core.run(sets.drive, instants, inputs, new Uint8Array(instants.length - 1).fill(1), recorded); return code ? null : rows; },
+    };
+    return Object.fromEntries(Object.entries(verbs).map(([name, verb]) => { const rows = verb(); return [name, rows && rows.map(bytesOf)]; }));
+  }),
+  /** Numbers and RMS of fits of a loop, from each start. */
+  fit: ({ schema, drives, x, y, parts }, core) => drives.map((given) => {
+    const { gear } = setsOf(schema, completed(schema, "Drive", given));
+    const places = gear.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) ? [i] : []));
+    const begin = performance.now(), found = fitted((numbers, free) => core.slopes("loop_slopes", { ...gear, numbers }, x, free), gear.numbers, gear.fields, places, y);
+    return { rms: found.rms, iterations: found.iterations, numbers: places.map((place) => found.numbers[place]), seconds: 1e-3 * (performance.now() - begin) };
+  }),
+  /** Codes of verbs with spoilt sets and points; any trap ends this process. */
+  spoil: async ({ schema, drives, spoilt }, core) => {
+    const codes = { number: [], points: [], law: [], shape: [], counts: [] };
+    const call = (set, points) => {
+      const counts = core.put(set), n = points.length;
+      core.doubles("points", 4 * n).set([...points, ...points, ...points, ...points.map(() => ROOM_TEMPERATURE)]);
+      return ["loop", "twist", "error", "spring"].map((verb) => core.call(verb, ...counts, n)).concat(core.call("friction", ...counts, n, 0));
+    };
+    const points = [0, 1e-4, -1e-4], keep = [1, 1, 1], instants = [0, 1e-4, 2e-4, 3e-4];
+    const inputs = [].concat(...Array.from({ length: 9 }, () => [0.1, 0, 0, 0, ROOM_TEMPERATURE, 0]));
+    for (const given of drives) {
+      const { gear, drive } = setsOf(schema, completed(schema, "Drive", given));
+      for (const value of spoilt) {
+        for (const set of [gear, drive])
+          for (let i = 0; i < set.numbers.length; i++) {
+            const numbers = set.numbers.with?.(i, value) ?? Object.assign([...set.numbers], { [i]: value });
+            if (set === gear) codes.number.push([value, ...call({ ...set, numbers }, points)]);
+            else {
+              core.call("rates", ...core.put({ ...set, numbers }), ROOM_TEMPERATURE);
+              try { core.run({ ...set, numbers }, instants, inputs, keep, [3]); } catch (error) { if (error instanceof WebAssembly.RuntimeError) throw error; }
+            }
+          }
+        codes.points.push([value, ...call(gear, [0, value, 0])]);
+      }
+      for (const wrong of [-1, 99, 2147483647, -2147483648]) {
+        for (let i = 0; i < gear.laws.length; i++) codes.law.push(...call({ ...gear, laws: Object.assign([...gear.laws], { [i]: wrong }) }, points));
+        for (let i = 0; i < gear.shape.length; i++) if (wrong !== 99) codes.shape.push(...call({ ...gear, shape: Object.assign([...gear.shape], { [i]: wrong }) }, points));
+      }
+      const [l, s, c] = core.put(gear);
+      for (const [dl, ds, dc] of [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1], [-l, -s, -c], [1e6, 0, 0], [0, 1e6, 0], [0, 0, 1e9]])
+        codes.counts.push(core.call("loop", l + dl, s + ds, c + dc, 3));
+      for (const n of [0, -1, core.capacity + 1, 2147483647]) codes.counts.push(core.call("loop", l, s, c, n));
+    }
+    return codes;
+  },
+};
+
+(async () => {
+  const { task, ...data } = JSON.parse(readFileSync(0, "utf8"), (_, value) => (value === "NaN" ? NaN : value === "Infinity" ? Infinity : value));
+  const packed = page && /id="wasm">"([^"]*)"/.exec(readFileSync(page, "utf8"))[1];
+  const core = packed && (await Core.of(gunzipSync(Buffer.from(packed, "base64"))));
+  process.stdout.write(JSON.stringify(await TASKS[task](data, core)));
+})();

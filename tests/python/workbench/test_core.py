@@ -1,0 +1,158 @@
+"""The core of the workbench, in WebAssembly: the bits of the package, and no trap on any input."""
+
+from __future__ import annotations
+
+import warnings
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+import strainwave as sw
+from hypothesis import Phase, given, settings
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from strainwave import _core
+from strainwave.workbench.schema import schema, values_of
+
+from tests.python.workbench.node import doubles, in_node, needs_node, needs_page
+from tests.support import strategies
+
+pytestmark = [needs_page, needs_node, pytest.mark.slow("native")]
+
+DRIVES = 400
+OF_ARCTAN = {
+    "Misalignment",
+    "MultiCompliance",
+}  # arctan is the C library's, whose last bit is not that of every other C library
+ROUNDING_SHARE = 1e-11  # of the largest value of a row: rounding of a law with an arctan
+RECORDED = [1, 2, 3, 4, 5, 6, 8, 9]  # input and output motion, twist, error, torque, friction
+TWIST = np.concatenate([np.linspace(0.0, 8e-4, 30), np.linspace(7e-4, -9e-4, 40), np.linspace(-8e-4, 5e-4, 30)])
+SPEED = np.linspace(-80.0, 80.0, 41)
+ANGLE = np.linspace(-9.0, 9.0, 41)
+INSTANTS = np.linspace(0.0, 2e-3, 21)
+
+
+def random_drives(count: int) -> list[sw.Drive]:
+    found: list[sw.Drive] = []
+
+    @settings(max_examples=count, phases=[Phase.generate], database=None, deadline=None, derandomize=True)
+    @given(strategies.drives)
+    def collect(drive: sw.Drive) -> None:
+        found.append(drive)
+
+    collect()
+    return found[:count]
+
+
+@pytest.fixture(scope="module")
+def drives() -> list[sw.Drive]:
+    return random_drives(DRIVES)
+
+
+def inputs() -> NDArray[np.float64]:
+    """Inputs of a sine at start, middle and end of each step, shape (steps, 3, 6)."""
+    given = np.zeros((len(INSTANTS) - 1, 3, 6))
+    time = INSTANTS[:-1, None] + np.diff(INSTANTS)[:, None] * np.array([0.0, 0.5, 1.0])
+    given[..., 0], given[..., 1] = 1e-3 * np.sin(900.0 * time), 0.9 * np.cos(900.0 * time)
+    given[..., 4] = 293.15
+    return given
+
+
+def native_run(drive: sw.Drive) -> NDArray[np.float64]:
+    laid_out = inputs()
+    state = _core.begin(drive, drive.rest().numbers, laid_out[0, 0])
+    out = np.empty((len(RECORDED), len(INSTANTS)))
+    out[:, 0] = _core.now(drive, state, laid_out[0, 0])[RECORDED, 0]
+    keep = np.ones(len(INSTANTS) - 1, np.uint8)
+    _core.simulate(drive, state, INSTANTS, laid_out, keep, _core.Method.exponential, RECORDED, out, 1, None)
+    return out
+
+
+def native(drive: sw.Drive) -> dict[str, list[Any] | None]:
+    """Return what the package computes; None where it refuses."""
+    gear = drive.gear
+    filled = [np.full(len(SPEED), value) for value in (3.0, 300.0)]
+    verbs = {
+        "loop": lambda: [gear.trace(TWIST)],
+        "friction": lambda: [_core.differentiate_steady(gear, SPEED, ANGLE, *filled, [])[0]],
+        "error": lambda: [gear.kinematic_error.error(ANGLE), gear.kinematic_error.slope(ANGLE)],
+        "spring": lambda: [gear.stiffness.torque(TWIST), gear.stiffness.tangent(TWIST)],
+        "run": lambda: list(native_run(drive)),
+    }
+    found: dict[str, list[Any] | None] = {}
+    for name, verb in verbs.items():
+        try:
+            rows = verb()
+        except ValueError:  # beyond where a law is valid
+            rows = None
+        found[name] = rows if rows is not None and all(np.isfinite(row).all() for row in rows) else None
+    return found
+
+
+def test_the_bits_are_those_of_the_package(drives: list[sw.Drive]) -> None:
+    filled = {name: [value] * len(SPEED) for name, value in (("load", 3.0), ("temperature", 300.0))}
+    points = {"twist": TWIST.tolist(), "speed": SPEED.tolist(), "angle": ANGLE.tolist(), **filled}
+    of_run = {"instants": INSTANTS.tolist(), "inputs": inputs().ravel().tolist(), "recorded": RECORDED}
+    computed = in_node("compute", core=True, schema=schema(), drives=[values_of(each) for each in drives], **points, **of_run)
+    assert len(computed) == DRIVES
+    compared = dict.fromkeys(computed[0], 0)
+    for drive, in_page in zip(drives, computed, strict=True):
+        with warnings.catch_warnings(action="ignore"):
+            expected = native(drive)
+        has_arctan = bool(strategies.models_of(drive) & OF_ARCTAN)
+        for name, rows in expected.items():
+            if rows is None:
+                continue
+            assert in_page[name] is not None, (name, drive)
+            for row, encoded in zip(rows, in_page[name], strict=True):
+                if has_arctan:
+                    assert doubles(encoded) == pytest.approx(row, rel=1e-11, abs=ROUNDING_SHARE * np.abs(row).max()), (
+                        name,
+                        drive,
+                    )
+                else:
+                    assert doubles(encoded).tobytes() == np.ascontiguousarray(row).tobytes(), (name, drive)
+            compared[name] += not has_arctan
+    assert min(compared.values()) > DRIVES // 3, compared
+
+
+def test_no_set_of_numbers_ends_in_a_trap(drives: list[sw.Drive]) -> None:
+    spoilt = ["NaN", "Infinity", 1e300, -1e300, 1e-300, 0.0]
+    codes = in_node("spoil", core=True, schema=schema(), drives=[values_of(each) for each in drives[:12]], spoilt=spoilt)
+    refused, done = 1, 0
+    assert {code for value, *each in codes["number"] if value is None for code in each} == {refused}  # NaN and inf are null
+    assert {code for value, *each in codes["points"] if value is None for code in each} == {refused}
+    assert {code for *_, code in codes["number"]} >= {done, refused}
+    for kind in ("law", "shape", "counts"):
+        assert set(codes[kind]) == {refused}, kind
+
+
+def test_a_fit_of_a_loop_ends_where_least_squares_of_scipy_ends() -> None:
+    gear = sw.load("hfuc-25-100")
+    turns = np.array([0.0, 1.4e-3, -1.4e-3, 1.4e-3, -0.7e-3, 0.7e-3])
+    twist = np.concatenate([np.linspace(a, b, 200, endpoint=False) for a, b in pairwise(turns)])
+    measured = gear.trace(twist) + 0.05 * np.random.default_rng(1).normal(size=len(twist))
+    start = gear.replace({"stiffness.k1": 3e4, "stiffness.k2": 4e4, "hysteresis.stiffness": [2e4, 7e3, 5e3]})
+    names = [path for path, *_ in _core.parameters(start)]
+    places = [i for i, name in enumerate(names) if name.startswith(("stiffness.", "hysteresis."))]
+    (found,) = in_node(
+        "fit",
+        core=True,
+        schema=schema(),
+        drives=[values_of(sw.Drive(gear=start))],
+        x=twist.tolist(),
+        y=measured.tolist(),
+        parts=["stiffness", "hysteresis"],
+    )
+    numbers = np.array([value for _, value, *_ in _core.parameters(start)])
+    beginning = numbers[places].copy()
+
+    def residual(logs: NDArray[np.float64]) -> NDArray[np.float64]:
+        numbers[places] = beginning * np.exp(logs)
+        return _core.differentiate_loop(_core.with_numbers(start, numbers), twist, [])[0] - measured
+
+    expected = least_squares(residual, np.zeros(len(places)), method="lm")
+    assert found["rms"] == pytest.approx(float(np.sqrt(np.mean(expected.fun**2))), rel=1e-4)
+    assert found["rms"] < 0.055
+    assert found["numbers"][:2] == pytest.approx(beginning[:2] * np.exp(expected.x[:2]), rel=1e-2)

@@ -1,0 +1,198 @@
+"""The page of the workbench in a browser: it draws, changes, links and exports."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import strainwave as sw
+from strainwave.files.gear_set import GearSet
+from strainwave.workbench.page import FILE, MISSING, page
+
+from tests.python.command import strainwave
+from tests.python.workbench.node import needs_page
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+READINGS = """() => Object.fromEntries([...document.querySelectorAll(".plot")]
+    .map(plot => [plot.id, plot.querySelector(".numbers").textContent]))"""
+INKED = """canvas => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return data.filter((value, i) => i % 4 === 2 && value > data[i - 2] + 60).length; }"""  # pixels that are rather blue
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    playwright = pytest.importorskip("playwright.sync_api")
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed")
+    with playwright.sync_playwright() as started:
+        opened = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"] if os.getuid() == 0 else [])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def tab(browser: Any, tmp_path: Path) -> Iterator[Any]:
+    """A tab with the page of a gear; whatever the page reports as an error fails the test."""
+    file = tmp_path / "gear.html"
+    file.write_text(page(GearSet.read("csg-20-100")))
+    opened = browser.new_page(viewport={"width": 1400, "height": 1000}, accept_downloads=True)
+    errors: list[str] = []
+    opened.on("pageerror", lambda error: errors.append(str(error)))
+    opened.on("console", lambda message: errors.append(message.text) if message.type in ("error", "warning") else None)
+    opened.goto(file.as_uri())
+    opened.locator(".numbers b").nth(10).wait_for()
+    yield opened
+    opened.close()
+    assert errors == []
+
+
+def number(readings: dict[str, str], plot: str) -> float:
+    """Return the first number that a plot shows."""
+    found = re.search(r"-?[\d.]+(e[+-]?\d+)?", readings[plot].partition("rpm")[2] or readings[plot])
+    assert found
+    return float(found[0])
+
+
+def readings(tab: Any) -> dict[str, str]:
+    tab.wait_for_timeout(600)  # until the hand rests and the run is drawn
+    found: dict[str, str] = tab.evaluate(READINGS)
+    return found
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_every_plot_shows_what_the_package_computes(tab: Any) -> None:
+    shown = readings(tab)
+    assert len(shown) == 7
+    gear = sw.load("csg-20-100")
+    arcmin = 3.141592653589793 / 10800.0
+    assert number(shown, "loop") == pytest.approx(0.5, rel=1e-3)  # the set was made with a loop of this width
+    amplitude = gear.kinematic_error.amplitude[0] / arcmin
+    assert number(shown, "error") == pytest.approx(2.0 * amplitude, rel=1e-3)
+    assert number(shown, "orders") == pytest.approx(amplitude, rel=1e-3)
+    assert number(shown, "friction") == pytest.approx(gear.friction_input.steady(52.4), rel=1e-3)
+    assert [tab.locator("canvas").nth(i).evaluate(INKED) > 100 for i in range(7)] == [True] * 7
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_dragged_slider_changes_the_loop_and_undo_brings_it_back(tab: Any) -> None:
+    before = readings(tab)
+    slider = tab.locator(".row", has=tab.locator("#field-gear\\.hysteresis\\.breakaway\\.0")).locator("input[type=range]")
+    slider.scroll_into_view_if_needed()
+    box = slider.bounding_box()
+    middle = box["y"] + box["height"] / 2
+    tab.mouse.move(box["x"] + box["width"] / 2, middle)
+    tab.mouse.down()
+    tab.mouse.move(box["x"] + 0.9 * box["width"], middle, steps=5)
+    tab.mouse.up()
+    assert number(readings(tab), "loop") > 1.2 * number(before, "loop")
+    tab.locator("#undo").click()
+    assert readings(tab) == before
+    tab.locator("#redo").click()
+    assert number(readings(tab), "loop") > 1.2 * number(before, "loop")
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_link_opens_the_same_gear(tab: Any, browser: Any) -> None:
+    field = tab.locator("#field-gear\\.stiffness\\.k1")
+    field.fill("3")
+    field.press("Enter")
+    shown = readings(tab)
+    other = browser.new_page(viewport={"width": 390, "height": 800})
+    other.goto(tab.evaluate("location.href"))
+    other.locator(".numbers b").nth(10).wait_for()
+    assert readings(other) == shown
+    assert other.evaluate("document.documentElement.scrollWidth") == 390
+    other.locator("#catalogue").select_option("hfuc-25-100")
+    assert other.locator("#name").input_value() == "HFUC-25-100"
+    other.goto(f"{FILE.as_uri()}#no-gear")
+    other.reload()
+    other.locator("#status.bad").wait_for()
+    assert "the link cannot be read" in other.locator("#status").text_content()
+    other.close()
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_exports_contain_the_gear_as_changed(tab: Any, tmp_path: Path) -> None:
+    field = tab.locator("#field-gear\\.damping")
+    field.fill("7.5")
+    field.press("Enter")
+    with tab.expect_download() as loaded:
+        tab.locator("#toml").click()
+    loaded.value.save_as(tmp_path / "gear.toml")
+    gear_set = GearSet.read(tmp_path / "gear.toml")
+    assert gear_set.gear == sw.load("csg-20-100").replace(damping=7.5)
+    assert gear_set.sources["gear.damping"].source == "set in the workbench"
+    assert gear_set.sources["gear.stiffness.k1"] != gear_set.sources["gear.damping"]
+    tab.locator("#python").click()
+    names: dict[str, Any] = {}
+    exec(tab.locator("#text-content").input_value(), names)
+    assert names["gear"] == gear_set.gear
+    in_page = number(readings(tab), "run") * 3.141592653589793 / 10800.0
+    assert in_page == pytest.approx(names["run"]["output_angle"][-1], rel=1e-3)
+    tab.locator("#text-close").click()
+    for name in ("CSV", "PNG"):
+        with tab.expect_download() as loaded:
+            tab.locator("#loop").get_by_role("button", name=name).click()
+        loaded.value.save_as(tmp_path / name)
+    assert (tmp_path / "CSV").read_text().startswith("curve,twist [arcmin],torque [N·m]\nnow,0,0\n")
+    assert (tmp_path / "PNG").read_bytes().startswith(b"\x89PNG")
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
+    tab.locator("#friction").get_by_role("button", name="Data…").click()
+    friction = sw.load("csg-20-100").friction_input
+    rpm = 3.141592653589793 / 30.0
+    lines = [f"{speed},{friction.steady(speed * rpm) + 0.01 * (-1) ** speed}" for speed in range(10, 1000, 10)]
+    lines += [f"{speed + 1},{friction.steady((speed + 1) * rpm) - 0.01}" for speed in range(10, 1000, 10)]
+    tab.locator("#text-content").fill("\n".join(lines))
+    tab.locator("#text-use").click()
+    assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
+    field = tab.locator("#field-gear\\.friction_input\\.viscous")
+    field.fill("0.01")
+    field.press("Enter")
+    assert "RMS residual 0.01 N·m" not in readings(tab)["friction"]
+    tab.get_by_role("button", name="Fit").click()
+    assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_kept_gear_is_drawn_beside_and_any_law_can_be_chosen(tab: Any) -> None:
+    tab.locator("#keep").click()
+    for law in tab.evaluate("[...document.getElementById('law-gear.stiffness').options].map(each => each.value)"):
+        tab.locator("#law-gear\\.stiffness").select_option(law)
+        assert "CSG-20-100" in readings(tab)["loop"]
+    tab.locator("#law-gear\\.friction_input").select_option("thermal")
+    tab.locator("#law-gear\\.friction_input\\.law").select_option("coulomb")
+    tab.get_by_role("button", name="one more element of amplitude").first.click()
+    assert tab.locator("#field-gear\\.kinematic_error\\.phase\\.1").count() == 1
+    tab.locator("#swap").click()
+    assert tab.locator("#law-gear\\.friction_input").input_value() == "coulomb"
+
+
+@needs_page
+def test_the_command_writes_the_page_of_a_gear(tmp_path: Path) -> None:
+    done = strainwave("workbench", "hfuc-20-80", folder=tmp_path)
+    assert done.stdout == f"wrote {Path('out/workbench.html')}; open it in a browser\n"
+    content = re.search(r'id="gear">(.*?)</script>', (tmp_path / "out" / "workbench.html").read_text())
+    assert content
+    assert json.loads(content[1])["name"] == "HFUC-20-80"
+
+
+def test_without_the_built_page_the_remedy_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("strainwave.workbench.page.FILE", tmp_path / "workbench.html")
+    with pytest.raises(FileNotFoundError, match=re.escape(MISSING)):
+        page()

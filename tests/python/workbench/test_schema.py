@@ -1,0 +1,109 @@
+"""Parameters in the page: taken apart as the compiled core takes them, written as files and Python that give the same drive."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import strainwave as sw
+from strainwave import _core
+from strainwave.files.gear_set import GearSet
+from strainwave.workbench.page import changed, drive_around, embedded
+from strainwave.workbench.schema import model_of, schema, values_of
+
+from tests.python.workbench.node import doubles, in_node, needs_node
+from tests.python.workbench.test_core import random_drives
+
+DRIVES = 60
+
+
+@pytest.fixture(scope="module")
+def drives() -> list[sw.Drive]:
+    """Whole drives of the catalogue, and random ones."""
+    return [sw.load(name) for name in sw.catalogue("drives")] + random_drives(DRIVES)
+
+
+def test_every_model_of_a_part_is_described_once_with_unit_and_text() -> None:
+    models = schema()["models"]
+    assert {f"{kind.__module__}.{kind.__name__}" for family in _core.families.values() for kind in family.values()} <= {
+        f"strainwave.{name}" for name in models
+    }
+    for name, model in models.items():
+        for field in model["fields"]:
+            assert field["doc"], (name, field["name"])
+            assert field["kind"] in ("part", "choice") or field["unit"], (name, field["name"])
+
+
+@pytest.mark.slow("report")
+def test_numbers_and_defaults_return_to_the_same_drive(drives: list[sw.Drive]) -> None:
+    for drive in drives:
+        assert model_of(sw.Drive, values_of(drive)) == drive
+
+
+@needs_node
+@pytest.mark.slow("report")
+def test_the_page_takes_a_drive_apart_as_the_core_does(drives: list[sw.Drive]) -> None:
+    flat = in_node("flatten", schema=schema(), drives=[changed(drive) for drive in drives])
+    for drive, parts in zip(drives, flat, strict=True):
+        laws, shape, numbers = _core.parts(drive)
+        assert (parts["laws"], parts["shape"]) == (laws, shape)
+        assert doubles(parts["numbers"]).tobytes() == numbers.tobytes()
+        assert parts["paths"] == [path for path, *_ in _core.parameters(drive)]
+        assert model_of(sw.Drive, parts["values"]) == drive
+
+
+@needs_node
+@pytest.mark.slow("report")
+@pytest.mark.filterwarnings("ignore")
+def test_python_and_file_of_the_page_give_the_same_drive(drives: list[sw.Drive], tmp_path: Path) -> None:
+    for drive, parts in zip(
+        drives, in_node("flatten", schema=schema(), drives=[values_of(each) for each in drives]), strict=True
+    ):
+        assert eval(parts["python"], {"sw": sw}) == drive
+        (tmp_path / "gear.toml").write_text(parts["toml"])
+        gear_set = GearSet.read(tmp_path / "gear.toml")
+        assert gear_set.drive == drive
+        assert {entry.source for entry in gear_set.sources.values()} <= {"a test", "not given"}
+
+
+@needs_node
+def test_a_link_carries_data_alone() -> None:
+    gear_set = GearSet.read("hfuc-25-100")
+    data: dict[str, Any] = {"name": "é ′", "drive": changed(drive_around(gear_set)), "view": {"run": {"amplitude": 0.1}}}
+    same, *faults = in_node("link", data=data, texts=["", "<script>", "A" * 60001, "_" * 100])
+    assert same == data
+    assert all(isinstance(fault, str) for fault in faults)
+
+
+@needs_node
+def test_what_is_no_drive_is_refused_with_its_place() -> None:
+    wrong: list[tuple[Any, str]] = [
+        (None, "Drive: parameters expected"),
+        ([], "Drive: parameters expected"),
+        ({"gear": {"damping": "1"}}, "Gear.damping: a finite number expected"),
+        ({"gear": {"damping": -1.0}}, "Gear.damping must be at least 0"),
+        ({"gear": {"stiffness": {"model": "none"}}}, "Gear.stiffness: no such law"),
+        ({"gear": {"stiffness": {"model": "__proto__"}}}, "Gear.stiffness: no such law"),
+        ({"gear": {"kinematics": {"model": "strain_wave", "flexspline_teeth": 200.5}}}, "whole number"),
+        ({"gear": {"kinematics": {"model": "strain_wave", "fixed": "both"}}}, "one of circular_spline, flexspline"),
+        ({"gear": {"hysteresis": {"model": "maxwell_slip", "stiffness": [1.0] * 1001}}}, "a list of numbers"),
+    ]
+    faults = in_node("refuse", schema=schema(), given=[given for given, _ in wrong])
+    for fault, (given, expected) in zip(faults, wrong, strict=True):
+        assert expected in fault, given
+
+
+@needs_node
+def test_columns_of_measurements_are_read() -> None:
+    texts = ["a,b\n1,2\n3,-4e1\n", "1;2,5\n3;4,5", "1\t2\n\n3 4\n", "1 2", "\n".join(["1 2"] * 9)]
+    one, comma, blank, few, many = in_node("columns", texts=texts)
+    assert (one, comma, blank) == ([[1, 3], [2, -40]], [[1, 3], [2.5, 4.5]], [[1, 3], [2, 4]])
+    assert "no two columns" in few
+    assert "more than 5" in many
+
+
+def test_no_text_of_a_gear_ends_its_element() -> None:
+    assert "<" not in embedded({"name": "</script><script>alert(1)"})
+    assert json.loads(embedded({"name": "</script>"})) == {"name": "</script>"}
