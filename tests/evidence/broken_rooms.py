@@ -84,7 +84,7 @@ FAULTS = (
     Fault(
         "dataset",
         f"{PACKAGE}/dataset/sampling.py",
-        "np.where(by_unit == by_condition, by_unit, MIXED)",
+        "np.where(by_unit == by_condition, by_unit, MIXED_SPLIT)",
         "np.where(by_unit == by_condition, by_unit, by_condition)",
     ),
     Fault("export", f"{PACKAGE}/export/mujoco.py", "coef=repr(1.0 / elements.ratio)", "coef=repr(-1.0 / elements.ratio)"),

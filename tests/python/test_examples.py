@@ -25,7 +25,7 @@ MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_t
 SLOW_MODULES = (
     "compensate.py",
     "smallest_error.py",
-    "recovery.py",
+    "inversion.py",
     "misalignment_sweep.py",
     "influence.py",
     "two_encoders.py",

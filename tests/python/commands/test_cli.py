@@ -39,8 +39,8 @@ def test_a_table_and_a_loop_become_a_gear_file_and_a_report(tmp_path: Path) -> N
         "identify", "hfuc-25-100", "table.csv", "loop.csv", "--out", "mine", folder=tmp_path
     )  # fmt: skip
     assert result.returncode == 0, result.stdout + result.stderr
-    written = ["gear.toml", "numbers.csv", "report.html", "results.json"]
-    assert sorted(path.name for path in (tmp_path / "mine").iterdir()) == written
+    written = {path.name for path in (tmp_path / "mine").iterdir()} - {"workbench.html"}  # only if it was built
+    assert written == {"gear.toml", "numbers.csv", "report.html", "results.json"}
     assert "error on held-out data" in result.stdout
     gear = sw.load(tmp_path / "mine" / "gear.toml")
     assert gear.friction_input.coulomb == pytest.approx(0.0208, abs=5e-4)

@@ -177,7 +177,7 @@ def test_few_points_without_errors_have_no_intervals() -> None:
     [
         ({"loop": "loop.csv"}, "loop must be a Loop"),
         ({"gear_set": "csg-20-100"}, "gear_set must be a GearSet"),
-        ({"rated_torque": "much"}, "rated_torque must be a number"),
+        ({"rated_torque": [1.0]}, "rated_torque must be a number"),
     ],
 )
 def test_what_is_of_the_wrong_kind_is_refused(arguments: dict[str, object], message: str) -> None:
