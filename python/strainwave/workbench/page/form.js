@@ -89,7 +89,8 @@ class Form {
     return made;
   }
   row(field, path, label) {
-    const key = path.join("."), { factor, text } = this.unitOf(field.unit);
+    const isPhase = field.unit === "rad" && field.name.endsWith("phase"); // of a wave, which no plot shows as an angle
+    const key = path.join("."), { factor, text } = isPhase ? { factor: Math.PI / 180, text: "°" } : this.unitOf(field.unit);
     const input = element("input", { id: `field-${key}`, inputMode: "decimal", autocomplete: "off", spellcheck: false, "aria-describedby": `doc-${key}` });
     const slider = element("input", { type: "range", min: -100, max: 100, value: 0, step: 1, tabIndex: -1, "aria-label": `change ${label}` });
     const effect = element("span", { className: "effect" });
