@@ -54,7 +54,8 @@ def percent(share: float) -> str:
         f"a probability of {percent(motion_model.MAX_CHANCE_OF_WAVE)} at most",
         f"uncertain by {percent(motion_model.BIAS_IN_FULL_BAND)} at least",
         f"a recorded speed is more than {logs.MAX_SPEED_FACTOR:g} times the slope of its angle",
-        f"differs from that of the gear by a factor of more than {logs.MAX_RATIO_FACTOR:g} over their correlation",
+        f"differs from that of the gear by a factor of more than {logs.MAX_SWING_ON_SPRING:g} over their correlation",
+        f"A factor above {logs.MAX_RATIO_FACTOR:g} is a remark: another ratio",
         f"the log shows another one, by more than {percent(along_motion.MAX_OFF_INERTIA)}",
     ],
 )

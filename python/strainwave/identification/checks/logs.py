@@ -16,7 +16,7 @@ from strainwave.identification.checks.comparisons import repeatability
 from strainwave.identification.checks.sizes import MISTAKEN_UNITS
 from strainwave.identification.experiments.motion_log import MotionLog, late, per_torque
 from strainwave.identification.fitting.unknowns import Estimate
-from strainwave.identification.reading.motion import MIN_EXPLAINED, PARTS_OF_RECORD, slopes_and_speeds, speed_per_slope
+from strainwave.identification.reading.motion import MIN_EXPLAINED, speed_per_slope
 from strainwave.identification.reading.names import words_of
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.units import MAX_JOINT_ANGLE
@@ -46,7 +46,10 @@ MAX_SHARE_OF_WHOLE = 0.99  # of the rows of a torque that is measured in its uni
 MAX_OFF_WHOLE = 1e-6  # difference from a whole number [1]
 MAX_SPEED_FACTOR = 2.45  # between a speed and the slope of its angle: the nearest units, rpm and deg/s, lie a factor of 6 apart
 MAX_FILTERED_FACTOR = 1.5  # likewise: filters and noise change it by less
-MAX_RATIO_FACTOR = 1.15  # between a ratio by motions of both shafts and that of the gear, but for noise: catalogues step by 1.2
+MAX_RATIO_FACTOR = (
+    1.15  # between a ratio by motions of both shafts and that of the gear without a remark: catalogues step by 1.2
+)
+MAX_SWING_ON_SPRING = 2.0  # of a load over that of its motor, at .7 of its antiresonance; a larger factor is no swing
 USUAL_UNITS = {"speed": ("rad/s", "deg/s", "rpm", "rev/s"), "angle": ("rad", "deg", "rev")}
 MAX_OFF_UNIT = 0.1  # relative: a unit that is nearer explains a factor
 VOLTAGE_BLOCKS = 10  # over which residuals of the voltage scatter
@@ -160,7 +163,7 @@ def _speed_factors(file: Recognised) -> Iterator[tuple[float, str, list[str]]]:
 
 
 def motions_of_both_shafts(file: Recognised, ratio: float) -> Iterator[Check]:
-    """Yield the check that a motion of the input is the ratio of the gear times as fast as one of the output.
+    """Yield the check that a motion of the input is the ratio of the gear times as large as one of the output.
 
     It compares the angle of one shaft with the speed of the other, or the two speeds. Two angles have a check of their own.
 
@@ -168,6 +171,32 @@ def motions_of_both_shafts(file: Recognised, ratio: float) -> Iterator[Check]:
         file: the log, as it is fitted
         ratio: of the gear
     """
+    for times, names, limit, remedy in _motions_compared(file, ratio):
+        off = _factor_between(times, ratio)
+        yield Check(
+            "motions of both shafts", file.path.name, off, limit, "1", off > limit,
+            f"by {names[0]} and {names[1]} the input turns {times:.4g} times as far as the output, the gear has a ratio of "
+            f"{abs(ratio):.6g}",
+            f"one of these is wrong: {remedy}",
+        )  # fmt: skip
+
+
+def another_ratio_of_shafts(file: Recognised, ratio: float) -> Iterator[str]:
+    """Yield a remark on motions of both shafts by another ratio than that of the gear, but not so far off that they fail."""
+    for times, names, limit, remedy in _motions_compared(file, ratio):
+        if MAX_RATIO_FACTOR < _factor_between(times, ratio) <= limit:
+            yield (
+                f"by {names[0]} and {names[1]} the input turns {times:.4g} times as far as the output, the gear has a ratio of "
+                f"{abs(ratio):.6g}: either the load swings on the spring of the gear, or one of these is wrong: {remedy}"
+            )
+
+
+def _factor_between(times: float, ratio: float) -> float:
+    return max(times / abs(ratio), abs(ratio) / times)
+
+
+def _motions_compared(file: Recognised, ratio: float) -> Iterator[tuple[float, list[str], float, str]]:
+    """Yield how many times as far the input turns as the output, the two columns, the limit of its factor, and the remedy."""
     record = file.recording
     pairs = [
         (of_input, of_output)
@@ -179,44 +208,45 @@ def motions_of_both_shafts(file: Recognised, ratio: float) -> Iterator[Check]:
     if not pairs or {"input_angle", "output_angle"} <= set(record.names):
         return
     names = [file.columns.get(each) or file.columns.get(f"reflected_{each[-5:]}", each) for each in pairs[0]]
-    times, correlation = _times_as_fast(record, *pairs[0])
+    times, correlation = _times_as_far(record, *pairs[0])
     if not times:
         return
-    factor = times / abs(ratio)
-    off, limit = max(factor, 1.0 / factor), MAX_RATIO_FACTOR / correlation  # noise of one motion changes it by 1 / correlation
+    factor, is_reflected = times / abs(ratio), f"reflected_{pairs[0][0][-5:]}" in file.columns
     units = [
         as_option("unit", name, unit)
         for channel, name, too_large in zip(pairs[0], names, (factor, 1.0 / factor), strict=True)
         for unit in USUAL_UNITS[channel[-5:]]
         if abs(_own_size(file, channel) / too_large / convert(1.0, unit, USUAL_UNITS[channel[-5:]][0]) - 1.0) < MAX_OFF_UNIT
     ]
-    is_reflected = f"reflected_{pairs[0][0][-5:]}" in file.columns
     ways = [f"the unit: {' or '.join(units)}"] if units else []
     if not is_reflected and abs(times - 1.0) < MAX_OFF_UNIT:
         ways.append(f"{names[0]} is already divided by the ratio: --column reflected_{pairs[0][0][-5:]}={names[0]}")
     elif not is_reflected:
         ways.append(f"the ratio of the gear, with a belt or pulley before it: --constant ratio={times:.4g}")
-    yield Check(
-        "motions of both shafts", file.path.name, off, limit, "1", off > limit,
-        f"by {names[0]} and {names[1]} the input turns {times:.4g} times as fast as the output, the gear has a ratio of "
-        f"{abs(ratio):.6g}",
-        f"one of these is wrong: {'; '.join([*ways, 'the side of one of them, or the time'])}",
-    )  # fmt: skip
+    yield times, names, MAX_SWING_ON_SPRING / correlation, "; ".join([*ways, "the side of one of them, or the time"])
 
 
-def _times_as_fast(record: Recording, of_input: str, of_output: str) -> tuple[float, float]:
-    """Return how many times as fast the input turns as the output, and the correlation of their motions; 0 and 0 if none."""
-    for parts in PARTS_OF_RECORD:
-        if of_input.endswith("angle"):
-            fast, slow = slopes_and_speeds(record[of_input], record[of_output], record.time, parts)
-        elif of_output.endswith("angle"):
-            slow, fast = slopes_and_speeds(record[of_output], record[of_input], record.time, parts)
-        else:
-            fast, slow = record[of_input], record[of_output]
-        squares = float(fast @ fast), float(slow @ slow)
-        if min(squares) > 0.0 and (explained := float(fast @ slow) ** 2 / (squares[0] * squares[1])) > MIN_EXPLAINED:
-            return float(np.sqrt(squares[0] / squares[1])), float(np.sqrt(explained))
-    return 0.0, 0.0
+def _times_as_far(record: Recording, of_input: str, of_output: str) -> tuple[float, float]:
+    """Return how many times as far the input turns as the output, and the correlation of their motions; 0 and 0 if none.
+
+    Angles, and integrals of speeds, are compared without their straight lines: so a biased gyro and a load that swings on
+    the spring, the more the faster the motion, count least.
+    """
+    far, near = (_displacement(record, name) for name in (of_input, of_output))
+    squares = float(far @ far), float(near @ near)
+    if min(squares) == 0.0 or (explained := float(far @ near) ** 2 / (squares[0] * squares[1])) <= MIN_EXPLAINED:
+        return 0.0, 0.0
+    return float(np.sqrt(squares[0] / squares[1])), float(np.sqrt(explained))
+
+
+def _displacement(record: Recording, name: str) -> Array:
+    """Return an angle, or the integral of a speed, without its straight line over the time [rad]."""
+    time, series = record.time, record[name]
+    if name.endswith("speed"):
+        series = np.concatenate([[0.0], np.cumsum(0.5 * (series[1:] + series[:-1]) * np.diff(time))])
+    line = np.stack([np.ones_like(time), time - time.mean()], axis=1)
+    left: Array = series - line @ np.linalg.lstsq(line, series, rcond=None)[0]
+    return left
 
 
 def _own_size(file: Recognised, channel: str) -> float:

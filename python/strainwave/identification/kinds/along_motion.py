@@ -29,6 +29,7 @@ from strainwave.identification.checks.logs import (
     INERTIA_IN_TWO_WAYS,
     RATIO_BY_ORDERS,
     RATIO_OF_ENCODERS,
+    another_ratio_of_shafts,
     checks_of_motion,
     held_out_error,
     motions_of_both_shafts,
@@ -157,7 +158,8 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     unchecked = _unchecked(prepared, file, estimates, {check.name for check in checks})
     shaped = _shape(predicted, log, held_out, ratio, name)
     remarks += [
-        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *file.remarks, *prepared.remarks,
+        *_scales(unchecked, log.effort), *speed_of_another_clock(file), *another_ratio_of_shafts(file, ratio),
+        *file.remarks, *prepared.remarks,
         *_shares(best.fit, file.regressors), *shaped.remarks,
     ]  # fmt: skip
     dry = [each for each in estimates if each.path == COULOMB_PATH and (not each.why or each.in_combination)]
