@@ -248,7 +248,7 @@ def analyse(
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")
     for each in loop_names(found.loops):
         words = ["identify", gear or "GEAR", *([] if friction is None else [str(friction)]), f"{target / each}.csv"]
-        print(f"for a gear: strainwave {shlex.join(words)}")
+        print(f"for a gear{'' if gear else ', its start set in place of GEAR'}: strainwave {shlex.join(words)}")
 
 
 @app.command()
