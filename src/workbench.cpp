@@ -8,7 +8,11 @@
 
 /// Entry of the workbench, the page that shows a gear in a browser: functions of the general drive over buffers of fixed size.
 /// `src/workbench.py` compiles it for WebAssembly. No input ends in a trap: a set of parameters is read within its bounds first.
+#ifdef __wasm__
 #define EXPORT(name) extern "C" __attribute__((export_name(#name)))
+#else  // compiled for its warnings alone
+#define EXPORT(name) extern "C"
+#endif
 
 using namespace strainwave;
 

@@ -144,12 +144,8 @@ def test_an_ensemble_is_complete(folder: Path) -> None:
 
 @pytest.mark.slow("physics")
 def test_a_gear_is_identified(folder: Path) -> None:
-    assert sorted(path.name for path in (folder / "out").iterdir()) == [
-        "gear.toml",
-        "numbers.csv",
-        "report.html",
-        "results.json",
-    ]
+    written = {path.name for path in (folder / "out").iterdir()} - {"workbench.html"}  # only if it was built
+    assert written == {"gear.toml", "numbers.csv", "report.html", "results.json"}
     friction = sw.load(folder / "out" / "gear.toml").friction_input
     assert friction.coulomb == pytest.approx(FRICTION.coulomb, rel=0.05)
 
