@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import Gear
 from strainwave.analysis.branches import turning_points
 from strainwave.files.gear_set import GearSet
 from strainwave.files.labels import Label
 from strainwave.files.recording import Recording
+from strainwave.files.units import base_exponents
 from strainwave.identification.candidates.torsion import (
     InputFriction,
     Nothing,
@@ -31,12 +33,13 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.pictures import Picture, curves_of
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
+from strainwave.typeset import percent
 
 Array = NDArray[np.float64]
 
@@ -48,6 +51,7 @@ MIN_CORRELATION_OF_SPRING = 0.9  # of torque and angle, if the torque alternates
 MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps; at such a rate a log shows no motion
 MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
 SERIES_STIFFNESS = "series_stiffness"  # of a spring behind the gear
+GAIN_PLACES = 360  # of the turn of the input at which a loop may begin
 FRICTION_KINDS = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
@@ -128,9 +132,14 @@ class Torsion(Kind):
         shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         fit, estimates = fitted.with_set_before(known)
+        gain_sigma = _gain_sigma(loop, gear)
+        estimates = tuple(_with_gain_sigma(each, gain_sigma) for each in estimates)
         result = FileResult(
             name, file, best.name, estimates,
-            (*file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start), *shaped.remarks),
+            (
+                *file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start),
+                *_of_error(gain_sigma, loop), *shaped.remarks,
+            ),
             (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
             pictures=(Picture(curves_of(fit), "loop", "torque" + _place(loop)),),
             held_out=_held_out(best),
@@ -303,6 +312,35 @@ def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_
         )
     else:
         yield "no friction at the input is known: all of it is fitted as hysteresis, of which a turning gear shows nothing"
+
+
+def _gain_sigma(loop: TorsionLoop, gear: Gear) -> float:
+    """Return the standard deviation of the gain of a loop at the input by the kinematic error over its travel [1].
+
+    The output is locked, so the input sees the spring through 1 / i + slope of the error: both twist and torque, referred to
+    the output, are off by that slope times i. Where the loop lies within the turn of the input is not known.
+    """
+    if loop.input_ratio is None:
+        return 0.0
+    travel = abs(loop.input_ratio) * float(np.ptp(loop.twist))
+    begin = np.linspace(0.0, 2.0 * np.pi, GAIN_PLACES, endpoint=False)
+    chords = (np.asarray(gear.kinematic_error.error(begin + travel)) - np.asarray(gear.kinematic_error.error(begin))) / travel
+    return abs(loop.input_ratio) * float(np.sqrt(np.mean(chords**2)))
+
+
+def _with_gain_sigma(estimate: FileEstimate, gain_sigma: float) -> FileEstimate:
+    """Return an estimate with the uncertainty by a gain that torque and twist share."""
+    exponents = base_exponents(estimate.unit)[1]
+    shift = abs(estimate.value) * gain_sigma * (exponents.get("kg", 0) - exponents.get("rad", 0))
+    return replace(estimate, sigma=float(np.hypot(estimate.sigma, shift)))
+
+
+def _of_error(gain_sigma: float, loop: TorsionLoop) -> Iterator[str]:
+    if gain_sigma > 0.0 and loop.input_ratio is not None:
+        yield (
+            f"over {abs(loop.input_ratio) * np.ptp(loop.twist):.3g} rad of the input the kinematic error of the gear changes "
+            f"the stiffness by {percent(2.0 * gain_sigma)}, which is part of ±; loops from other angles of the input average it"
+        )
 
 
 def _shared(best: TorsionCandidate, gear: Any, loop: TorsionLoop, friction_measured: bool) -> dict[str, str]:

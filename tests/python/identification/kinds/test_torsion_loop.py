@@ -1,0 +1,51 @@
+"""Torsion loops: what the kinematic error of a gear changes of one at the input."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import strainwave as sw
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.kinds.torsion_loop import _gain_sigma
+
+OWN = sw.load("hfuc-20-80")
+GEAR = OWN.replace(friction_input=OWN.friction_input.replace(coulomb=0.0, breakaway=0.0))
+AMPLITUDE, ORDER = 8e-5, 2.0
+TRAVEL = 0.25  # rad of the input
+
+
+def loop_of(gear: sw.Gear, begin: float) -> sw.Recording:
+    """A loop at the input with the output locked, where the input begins at an angle of it [rad]: virtual work, no friction."""
+    way = TRAVEL * np.concatenate([np.linspace(0, 1, 20), np.linspace(1, -1, 40)[1:], np.linspace(-1, 1, 40)[1:]])
+    error, ratio = gear.kinematic_error, gear.kinematics.ratio
+    twist = way / ratio + error.error(begin + way) - error.error(begin)
+    torque = (1.0 / ratio + error.slope(begin + way)) * np.asarray(gear.trace(twist))
+    return sw.Recording({"input_angle": way, "input_torque": torque}, {"input_angle": "rad", "input_torque": "N.m"})
+
+
+def gear_with(phase: float) -> sw.Gear:
+    return GEAR.replace(kinematic_error=sw.kinematic_error.Fourier(order=[ORDER], amplitude=[AMPLITUDE], phase=[phase]))
+
+
+def test_a_short_travel_sees_the_slope_of_the_error() -> None:
+    """Of one order anywhere in the turn: i A B / sqrt 2."""
+    gear = gear_with(0.3)
+    loop = TorsionLoop.of(loop_of(gear, 0.0), gear)
+    chord = np.sin(ORDER * TRAVEL) / (ORDER * TRAVEL)  # of a travel to both sides
+    expected = abs(gear.kinematics.ratio) * AMPLITUDE * ORDER * chord / np.sqrt(2.0)
+    assert _gain_sigma(loop, gear) == pytest.approx(expected, rel=0.01)
+
+
+@pytest.mark.slow("identification")
+def test_stiffness_of_a_loop_at_the_input_contains_the_error_of_the_gear() -> None:
+    """Eight places of the turn, which nothing in the file states. Without the error in it ± would be a twentieth."""
+    start = replace(sw.GearSet.read("hfuc-20-80"), gear=gear_with(0.0))
+    off = []
+    for begin in np.arange(8) * np.pi / 8.0:
+        found = sw.identify(start, {"torsion": loop_of(gear_with(0.0), begin)})
+        k1 = next(each for each in found.files[0].estimates if each.path == "gear.stiffness.k1")
+        off.append((k1.value - GEAR.stiffness.k1) / k1.sigma)
+    assert np.max(np.abs(off)) < 2.0
+    assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5
