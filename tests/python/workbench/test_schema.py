@@ -96,6 +96,26 @@ def test_what_is_no_drive_is_refused_with_its_place() -> None:
 
 
 @needs_node
+def test_a_view_of_a_link_has_no_text_but_those_of_its_menus() -> None:
+    evil = "step(amplitude=1, duration=1); print('mine'); sw.scenario.step"
+    wrong: list[Any] = [
+        {"run": {"command": evil, "shown": evil, "duration": 0, "amplitude": None}, "travel": {"by": evil, "history": evil}},
+        {"units": {"angle": evil, "torque": "__proto__"}, "effect": "constructor", "run": {"shown": "toString", "duration": -1}},
+        {"travel": {"history": "__proto__"}, "run": "command", "friction": {"maxSpeed": 0, "load": "1"}},
+        None,
+    ]
+    short = {"gear": {"damping": 3.0}}
+    good = {"run": {"command": "sine", "duration": 0.25}, "units": {"angle": "deg"}}
+    *refused, (view, text) = in_node("views", schema=schema(), drive=short, given=[*wrong, good])
+    assert refused == [refused[-1]] * len(wrong)
+    assert "sw.scenario.step(amplitude=0.1, duration=0.5)" in refused[0][1]
+    assert (view["run"]["command"], view["run"]["duration"], view["units"]["angle"]) == ("sine", 0.25, "deg")
+    names: dict[str, Any] = {}
+    exec(text, names)
+    assert names["drive"].gear == sw.Gear(damping=3.0)
+
+
+@needs_node
 def test_columns_of_measurements_are_read() -> None:
     texts = ["a,b\n1,2\n3,-4e1\n", "1;2,5\n3;4,5", "1\t2\n\n3 4\n", "1 2", "\n".join(["1 2"] * 9)]
     one, comma, blank, few, many = in_node("columns", texts=texts)

@@ -4,6 +4,9 @@ const FINE = 1.01, COARSE = 1.1; // factors of the arrow keys, without and with 
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
 
+/** The number of a field; NaN if it is empty or has none. */
+const numberOf = (text) => (text.trim() ? Number(text.trim().replace(",", ".")) : NaN);
+
 function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [key, value] of Object.entries(properties)) {
@@ -104,7 +107,7 @@ class Form {
       if (!wrong) this.set(path, value, done);
       return !wrong;
     };
-    input.onchange = () => { if (put(Number(input.value.replace(",", ".")) * factor, true)) this.refresh(row); };
+    input.onchange = () => { if (put(numberOf(input.value) * factor, true)) this.refresh(row); };
     input.onkeydown = (event) => {
       if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
       event.preventDefault();
@@ -131,7 +134,7 @@ class Form {
   }
   limits(field, unit, factor) {
     const end = (value, none) => (value === undefined ? none : shortText(value / factor));
-const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
+    const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
     return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${low}${end(field.min, "−∞")}, ${end(field.max, "∞")}${high}`;
   }
   shown({ path, factor }) { return String(Number((valueAt(this.get(), path) / factor).toPrecision(7))); }

@@ -143,13 +143,14 @@ function gearToml(schema, name, drive, families, sourceOf) {
   return `${lines.join("\n")}\n`;
 }
 
-/** A model as a Python expression; parts and numbers that have their default are left out. */
-function pythonOf(schema, id, values, indent = "") {
+/** A model as a Python expression; parts and numbers that have their default are left out. `texts` replace members. */
+function pythonOf(schema, id, values, indent = "", texts = {}) {
   const deeper = `${indent}    `, lines = [];
   for (const field of schema.models[id].fields) {
     const value = values[field.name], otherwise = field.follows ? values[field.follows] : field.default;
     if (!field.required && sameValues(value, otherwise)) continue;
-    if (field.kind === "part") lines.push(`${field.name}=${pythonOf(schema, modelOf(schema, field, value), value, deeper)}`);
+    if (texts[field.name]) lines.push(`${field.name}=${texts[field.name]}`);
+    else if (field.kind === "part") lines.push(`${field.name}=${pythonOf(schema, modelOf(schema, field, value), value, deeper)}`);
     else if (field.kind === "choice") lines.push(`${field.name}=${JSON.stringify(value)}`);
     else if (field.kind === "sequence") lines.push(`${field.name}=[${value.map(floatText).join(", ")}]`);
     else lines.push(`${field.name}=${numberText(field, value)}`);

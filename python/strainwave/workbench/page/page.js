@@ -19,12 +19,18 @@ const VIEW = {
   effect: "loop width",
 };
 
-/** A view from a link: numbers, names and flags of the kinds that VIEW has; all else is left out. */
-function viewFrom(given, like = VIEW) {
+const EFFECTS = ["loop width", "mean stiffness", "friction at speed", "kinematic error"];
+const POSITIVE = ["duration", "frequency", "maxSpeed", "temperature"]; // numbers of a view
+
+/** A view from a link: finite numbers, and texts that their menus have; the rest is as in VIEW. */
+function viewFrom(schema, given, like = VIEW) {
+  const texts = { by: ["torque", "twist"], history: Object.keys(HISTORIES), command: ["step", "sine"], shown: Object.keys(OUTPUTS), effect: EFFECTS };
+  if (like === VIEW.units) for (const of in like) texts[of] = Object.keys(schema.units[of]);
+  const allowed = (key, value) => (typeof value === "number" ? Number.isFinite(value) && (value > 0 || !POSITIVE.includes(key)) : texts[key].includes(value));
   return Object.fromEntries(Object.entries(like).map(([key, value]) => {
-    const other = given?.[key];
-    if (typeof value === "object") return [key, viewFrom(other, value)];
-    return [key, typeof other === typeof value && (typeof other !== "number" || Number.isFinite(other)) ? other : value];
+    const other = given && Object.hasOwn(given, key) ? given[key] : undefined;
+    if (typeof value === "object") return [key, viewFrom(schema, other, value)];
+    return [key, typeof other === typeof value && allowed(key, other) ? other : value];
   }));
 }
 
@@ -40,7 +46,7 @@ function sharedByPlots(of) {
 class Workbench {
   constructor(core, schema, catalogue, start) {
     Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
-    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom({ travel: start.travel }) };
+    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom(schema, { travel: start.travel }) };
     this.saved = this.state;
   }
   // ---- State ---------------------------------------------------------------------------------------------------------
@@ -148,7 +154,7 @@ class Workbench {
     const perAngle = () => this.unitOf("N.m/rad");
     const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
     const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
-    const output = () => OUTPUTS[this.view.run.shown] ?? OUTPUTS["output angle"];
+    const output = () => OUTPUTS[this.view.run.shown];
     const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
     return [
       card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
@@ -233,9 +239,10 @@ class Workbench {
       const { factor, text } = of ? this.unit(of) : { factor: 1, text: "" };
       const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
       input.onchange = () => {
-        const value = Number(input.value.replace(",", ".")) * factor;
-        if (input.value.trim() !== "" && Number.isFinite(value)) this.setView([group, name], value);
-        else this.say(`${label}: ${input.value} is no number`, true);
+        const value = numberOf(input.value) * factor;
+        const wrong = !Number.isFinite(value) ? "is no number" : POSITIVE.includes(name) && value <= 0 ? "must be above 0" : "";
+        if (wrong) this.say(`${label}: ${input.value} ${wrong}`, true);
+        else this.setView([group, name], value);
       };
       return element("label", {}, `${label} `, input, ` ${text}`);
     });
@@ -262,7 +269,7 @@ class Workbench {
   }
   /** Beside each number of the gear: the change of the chosen measure if it grows by 10 %. */
   showEffects() {
-    const measure = this.measures[this.view.effect] ?? this.measures["loop width"], { gear } = this.sets;
+    const measure = this.measures[this.view.effect], { gear } = this.sets;
     let now = NaN;
     try { now = measure(this.sets); } catch { /* said where it is drawn */ }
     gear.paths.forEach((path, i) => {
@@ -344,8 +351,8 @@ class Workbench {
       `speed = np.linspace(${floatText(friction.maxSpeed / 200)}, ${floatText(friction.maxSpeed)}, 200)  # rad/s`,
       `friction = gear.friction_input.steady(speed, load=${floatText(friction.load)}, temperature=${floatText(friction.temperature)})  # N.m`,
       `angle = np.linspace(0.0, 2.0 * np.pi, ${TURN_POINTS + 1})`, "error = gear.kinematic_error.error(angle)  # rad", "",
-      `drive = ${pythonOf(this.schema, "Drive", drive).replace(/gear=sw\.Gear\((?:\n.*?\n {4}|[^\n]*?)\)(?=,\n|\)|,)/s, "gear=gear")}`,
-      `command = sw.scenario.${run.command}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
+      `drive = ${pythonOf(this.schema, "Drive", drive, "", { gear: "gear" })}`,
+      `command = sw.scenario.${run.command === "sine" ? "sine" : "step"}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
       `run = sw.simulate(drive, command${run.load ? `, load_torque=${floatText(run.load)}` : ""})`, `run[${JSON.stringify(run.shown.replaceAll(" ", "_"))}]`, "",
     ].join("\n");
   }
@@ -355,13 +362,13 @@ class Workbench {
   }
   async open(fragment) {
     const given = await fromFragment(fragment);
-    this.change({ name: String(given.name ?? "").slice(0, 80), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(given.view) }, true);
+    this.change({ name: String(given.name ?? "").slice(0, 80), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view) }, true);
     this.showAll();
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
     this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change));
-    by("effect").replaceChildren(...Object.keys(this.measures).map((name) => element("option", { value: name }, name)));
+    by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
     by("name").onchange = () => this.change({ ...this.state, name: by("name").value.replace(/[\r\n]/g, " ") }, true);
