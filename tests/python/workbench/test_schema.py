@@ -10,7 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 from strainwave.files.gear_set import GearSet
-from strainwave.workbench.page import changed, drive_around, embedded
+from strainwave.workbench.page import changed, drive_around, embedded, start_of
 from strainwave.workbench.schema import model_of, schema, values_of
 
 from tests.python.workbench.node import doubles, in_node, needs_node
@@ -122,6 +122,37 @@ def test_columns_of_measurements_are_read() -> None:
     assert (one, comma, blank) == ([[1, 3], [2, -40]], [[1, 3], [2.5, 4.5]], [[1, 3], [2, 4]])
     assert "no two columns" in few
     assert "more than 5" in many
+
+
+def identified(**parts: Any) -> GearSet:
+    """Return a gear set as from a log: of the drive, the parts given."""
+    whole = GearSet.of(sw.Drive(gear=sw.load("csg-20-100"), **parts), name="joint", source="identified from log.csv")
+    sources = {path: entry for path, entry in whole.sources.items() if path.partition(".")[0] in {"gear", *parts}}
+    others = {"motor", "control", "load", "sensors", "thermal", "meter"} - parts.keys()
+    return whole.replace(sources=sources, **dict.fromkeys(others))
+
+
+def test_a_drive_has_the_parts_of_its_set_and_a_controller_that_holds_them() -> None:
+    source, load = sw.motor.CurrentSource(torque_constant=0.1, inertia=0.0), sw.loads.Pendulum(inertia=1.0, gravity_torque=25.0)
+    gear_set = identified(motor=source, load=load)
+    drive = drive_around(gear_set)
+    assert (drive.motor, drive.load, start_of(gear_set)["parts"]) == (source, load, ["motor", "load"])
+    run = sw.simulate(drive, sw.scenario.step(amplitude=0.5, duration=8.0))
+    assert run["output_angle"][-1] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_motor_that_takes_a_voltage_is_replaced_and_its_sources_are_left_out() -> None:
+    gear_set = identified(motor=sw.motor.DC(inertia=3e-5))
+    start = start_of(gear_set)
+    assert drive_around(gear_set).motor == sw.motor.TorqueSource(inertia=3e-5)
+    assert "motor" not in start["parts"]
+    assert not [path for path in start["sources"] if path.startswith(("motor.", "control."))]
+
+
+@pytest.mark.parametrize("law", [sw.stiffness.Backlash(clearance=0.0025), sw.stiffness.Linear(k=1e-6)])
+def test_a_gear_within_its_play_has_a_drive(law: Any) -> None:
+    gear_set = GearSet.of(sw.Gear(stiffness=law), name="play", source="measured")
+    assert drive_around(gear_set).control.limit > 0.0
 
 
 def test_no_text_of_a_gear_ends_its_element() -> None:
