@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from strainwave import Drive, Gear, control, loads, motor
+from strainwave.files.entries import IDENTIFIED_SOURCE, NOT_GIVEN
 from strainwave.files.gear_set import GearSet, catalogue
 from strainwave.workbench.schema import values_of
 
@@ -51,13 +52,22 @@ def embedded(data: Any) -> str:
 def start_of(gear_set: GearSet) -> dict[str, Any]:
     """Return what the page begins with: the gear in a drive, what it is loaded with, and the sources of its numbers."""
     parts = own_parts(gear_set)
-    sources = {path: entry.source for path, entry in gear_set.sources.items() if path.partition(".")[0] in {"gear", *parts}}
-    return _entry(gear_set) | {"parts": list(parts), "sources": sources}
+    own = {path: entry for path, entry in gear_set.sources.items() if path.partition(".")[0] in {"gear", *parts}}
+    sources = {path: entry.source for path, entry in own.items()}
+    is_identified = {path for path, source in sources.items() if source.startswith(IDENTIFIED_SOURCE)}
+    sigmas = {path: own[path].uncertainty for path in is_identified if own[path].uncertainty is not None}
+    return _entry(gear_set) | {"parts": list(parts), "sources": sources, "sigmas": sigmas}
 
 
 def entries() -> dict[str, Any]:
-    """Return the gears of the catalogue, by their names."""
-    return {name: _entry(GearSet.read(name)) for name in catalogue()}
+    """Return the gears of the catalogue, by their names, each number with a short source."""
+    gears = {name: GearSet.read(name) for name in catalogue()}
+    return {name: _entry(each) | {"sources": _short_sources(each, f"catalogue {each.name}")} for name, each in gears.items()}
+
+
+def _short_sources(gear_set: GearSet, source: str) -> dict[str, str]:
+    given = {path: entry for path, entry in gear_set.sources.items() if entry.source != NOT_GIVEN}
+    return {path: f"assumed: {source}" if entry.assumed else source for path, entry in given.items()}
 
 
 def _entry(gear_set: GearSet) -> dict[str, Any]:

@@ -22,6 +22,12 @@ const TASKS = {
     const view = viewFrom(schema, each);
     return [view, Workbench.prototype.python.call({ schema, view, state: { drive: completed(schema, "Drive", drive) } })];
   }),
+  /** gear.toml of drives that follow on a gear of the page. */
+  export: ({ schema, start, catalogue, key, drives }) => drives.map((given) => {
+    const workbench = Object.assign(Object.create(Workbench.prototype), { schema, start, catalogue });
+    workbench.state = { name: "made", drive: completed(schema, "Drive", given), origin: workbench.originOfLink(key) };
+    return workbench.toml();
+  }),
   columns: ({ texts }) => texts.map((text) => { try { const { x, y } = twoColumns(text, 5); return [[...x], [...y]]; } catch (error) { return error.message; } }),
   /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
   compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {

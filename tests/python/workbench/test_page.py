@@ -151,6 +151,23 @@ def test_exports_contain_the_gear_as_changed(tab: Any, tmp_path: Path) -> None:
 
 @needs_page
 @pytest.mark.slow("report")
+def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
+    row = tab.locator(".row", has=tab.locator("#field-gear\\.hysteresis\\.breakaway\\.0"))
+    assert row.locator(".mark").text_content() == "assumed"
+    assert "Source: assumed: k1 x 0.5 arcmin" in row.get_attribute("title")
+    shown = readings(tab)
+    assert "from assumed numbers" in shown["loop"]
+    assert "motor, controller and load are assumed" in shown["run"]
+    tab.locator("#catalogue").select_option("hfuc-25-100")
+    assert row.get_attribute("title") == "Source: assumed: catalogue HFUC-25-100"
+    assert "rated torque" not in tab.locator("#loop").text_content()
+    tab.locator("#undo").click()
+    assert "30 % of rated torque" in tab.locator("#loop").text_content()
+    assert "Source: assumed: k1 x 0.5 arcmin" in row.get_attribute("title")
+
+
+@needs_page
+@pytest.mark.slow("report")
 def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
     tab.locator("#friction").get_by_role("button", name="Data…").click()
     friction = sw.load("csg-20-100").friction_input

@@ -115,6 +115,41 @@ def test_a_view_of_a_link_has_no_text_but_those_of_its_menus() -> None:
     assert names["drive"].gear == sw.Gear(damping=3.0)
 
 
+def exported(tmp_path: Path, gear_set: GearSet, key: Any, *drives: sw.Drive) -> list[GearSet]:
+    """Return the gear files of drives that a page with a set writes; `key` names the gear that they come from."""
+    start, entry = start_of(gear_set), start_of(GearSet.read("hfuc-25-100"))
+    given = [changed(drive) for drive in drives]
+    texts = in_node("export", schema=schema(), start=start, catalogue={"hfuc-25-100": entry}, key=key, drives=given)
+    path = tmp_path / "gear.toml"
+    return [GearSet.read(path) for text in texts if path.write_text(text)]
+
+
+@needs_node
+def test_a_sequence_keeps_its_source_only_if_all_of_it_is_unchanged(tmp_path: Path) -> None:
+    gear_set = GearSet.read("csg-20-100")
+    drive, path = drive_around(gear_set), "gear.hysteresis.breakaway[0]"
+    values = gear_set.gear.hysteresis.breakaway
+    second = drive.replace({"gear.hysteresis.breakaway": [values[0], 0.5, values[2]]})
+    longer = drive.replace({"gear.hysteresis.breakaway": [*values, 0.1], "gear.hysteresis.stiffness": [9.146e3, 4.573e3, 2.287e3, 1e3]})
+    limited = drive.replace({"control.limit": 3.0})
+    same, one, more, control = exported(tmp_path, gear_set, gear_set.name, drive, second, longer, limited)
+    assert same.sources[path] == gear_set.sources[path]
+    assert same.control is None
+    assert one.sources[path].source == more.sources[path].source == "set in the workbench"
+    assert control.sources["control.limit"].source == "set in the workbench"
+    assert control.sources["control.proportional"].source == "assumed by the workbench"
+
+
+@needs_node
+@pytest.mark.parametrize("key", ["hfuc-25-100", "another", "__proto__", 3])
+def test_another_gear_has_no_source_of_the_first(tmp_path: Path, key: Any) -> None:
+    first, chosen = GearSet.read("csg-20-100"), GearSet.read("hfuc-25-100")
+    (made,) = exported(tmp_path, first, key, drive_around(first))
+    assert made.gear == first.gear
+    mine = {entry.source for path, entry in first.sources.items() if entry not in chosen.sources.values()}
+    assert not mine & {entry.source for entry in made.sources.values()}
+
+
 @needs_node
 def test_columns_of_measurements_are_read() -> None:
     texts = ["a,b\n1,2\n3,-4e1\n", "1;2,5\n3;4,5", "1\t2\n\n3 4\n", "1 2", "\n".join(["1 2"] * 9)]

@@ -23,9 +23,9 @@ const select = (options, value, properties = {}) => {
 };
 
 class Form {
-  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete. */
-  constructor(root, schema, unitOf, get, set) {
-    Object.assign(this, { root, schema, unitOf, get, set, rows: new Map(), open: new Set(), used: new Set() });
+  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `sourceOf(path)` its source. */
+  constructor(root, schema, unitOf, get, set, sourceOf) {
+    Object.assign(this, { root, schema, unitOf, get, set, sourceOf, rows: new Map(), open: new Set(), used: new Set() });
   }
   /** Anew: a law, a length or a unit is another. */
   build() {
@@ -98,7 +98,9 @@ class Form {
     const slider = element("input", { type: "range", min: -100, max: 100, value: 0, step: 1, tabIndex: -1, "aria-label": `change ${label}` });
     const effect = element("span", { className: "effect" });
     const doc = element("div", { className: "doc", id: `doc-${key}` }, this.limits(field, text, factor));
-    const row = { field, path, input, slider, effect, factor };
+    const mark = element("small", { className: "mark" }), source = element("div", { className: "doc" });
+    const made = element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text), " ", mark), input, slider, effect, doc, source);
+    const row = { field, path, input, slider, effect, factor, mark, source, made };
     const put = (value, done) => {
       const wrong = problemOf(field, value);
       input.classList.toggle("wrong", Boolean(wrong));
@@ -129,8 +131,8 @@ class Form {
     };
     slider.onchange = () => { base = null; slider.value = 0; this.set(path, valueAt(this.get(), path), true); };
     this.rows.set(key, row);
-    input.value = this.shown(row);
-    return element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text)), input, slider, effect, doc);
+    this.refresh(row);
+    return made;
   }
   limits(field, unit, factor) {
     const end = (value, none) => (value === undefined ? none : shortText(value / factor));
@@ -138,8 +140,16 @@ class Form {
     return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${low}${end(field.min, "−∞")}, ${end(field.max, "∞")}${high}`;
   }
   shown({ path, factor }) { return String(Number((valueAt(this.get(), path) / factor).toPrecision(7))); }
-  refresh(row) { row.input.value = this.shown(row); }
-  refreshAll() { for (const row of this.rows.values()) if (row.input !== document.activeElement) this.refresh(row); }
+  refresh(row) {
+    row.input.value = this.shown(row);
+    this.showSource(row);
+  }
+  showSource({ path, mark, source, made, factor }) {
+    const { source: text, sigma } = this.sourceOf(path);
+    mark.textContent = sigma !== undefined ? `identified ± ${shortText(sigma / factor, 2)}` : text.startsWith("assumed") ? "assumed" : "";
+    made.title = source.textContent = `Source: ${text}`;
+  }
+  refreshAll() { for (const row of this.rows.values()) if (row.input === document.activeElement) this.showSource(row); else this.refresh(row); }
 }
 
 /** Scale of a slider whose number is zero: the default of its field, else an angle of a turn, else one. */

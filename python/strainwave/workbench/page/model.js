@@ -96,7 +96,7 @@ function replaced(values, path, value) {
   copy[head] = rest.length ? replaced(values[head], rest, value) : value;
   return copy;
 }
-const valueAt = (values, path) => path.reduce((inner, key) => inner[key], values);
+const valueAt = (values, path) => path.reduce((inner, key) => inner?.[key], values);
 
 function sameValues(one, other) {
   return JSON.stringify(one) === JSON.stringify(other);
@@ -111,7 +111,7 @@ function floatText(value) {
 }
 const numberText = (field, value) => (field.kind === "whole" ? String(value) : floatText(value));
 
-/** The lines of gear.toml. `sourceOf(path)` is the source of a number, as "gear.stiffness.k1". */
+/** The lines of gear.toml. `sourceOf(path)` is the source of a number or sequence, as "gear.stiffness.k1". */
 function gearToml(schema, name, drive, families, sourceOf) {
   const lines = [`name = ${JSON.stringify(name)}`];
   const table = (header, id, chosen, values, path) => {
@@ -125,8 +125,7 @@ function gearToml(schema, name, drive, families, sourceOf) {
       else if (field.kind === "sequence" && !value.length) lines.push(`${field.name} = []`);
       else {
         const written = field.kind === "sequence" ? `[${value.map(floatText).join(", ")}]` : numberText(field, value);
-        const source = sourceOf(field.kind === "sequence" ? `${place}[0]` : place);
-        lines.push(`${field.name} = { value = ${written}, unit = ${unit}, source = ${JSON.stringify(source)} }`);
+        lines.push(`${field.name} = { value = ${written}, unit = ${unit}, source = ${JSON.stringify(sourceOf(place))} }`);
       }
     }
     for (const [field, value, place] of inner) table(`${header}.${field.name}`, modelOf(schema, field, value), field.chosen, value, place);

@@ -34,6 +34,10 @@ function viewFrom(schema, given, like = VIEW) {
   }));
 }
 
+/** A name of one line, of whole characters. */
+const nameFrom = (text) => text.slice(0, 80).toWellFormed().replace(/[\p{Cc}\p{Zl}\p{Zp}]/gu, " ");
+const sentence = (names) => `${[names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ")} ${names.length > 1 ? "are" : "is"} assumed`;
+
 /** A function of the sets of a drive whose result several plots of one frame share. */
 function sharedByPlots(of) {
   const known = new WeakMap();
@@ -45,12 +49,34 @@ function sharedByPlots(of) {
 
 class Workbench {
   constructor(core, schema, catalogue, start) {
-    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
-    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom(schema, { travel: start.travel }) };
+    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, });
+    const origin = this.origin(start.name, start);
+    this.state = { name: start.name, drive: origin.drive, view: viewFrom(schema, { travel: start.travel }), origin };
     this.saved = this.state;
   }
   // ---- State ---------------------------------------------------------------------------------------------------------
   get view() { return this.state.view; }
+  /** Where the numbers of a state come from: of a gear that the page contains, else nothing. It goes with the state through Undo. */
+  origin(key, gear) {
+    const { sources = {}, sigmas = {}, rated = null, parts = [] } = gear ?? {};
+    return { key, sources, sigmas, rated, parts, drive: gear ? completed(this.schema, "Drive", gear.drive) : null };
+  }
+  originOfLink(key) {
+    if (key === this.start.name) return this.origin(key, this.start);
+    return this.origin(key, typeof key === "string" && Object.hasOwn(this.catalogue, key) ? this.catalogue[key] : null);
+  }
+  /** Source of the number at these keys, and its standard deviation if identified. A sequence has its source as a whole. */
+  sourceOf(keys) {
+    const { drive, origin } = this.state, whole = keys.filter((key) => typeof key === "string"), name = whole.join(".");
+    if (!origin.drive || !sameValues(valueAt(drive, whole), valueAt(origin.drive, whole))) return { source: "set in the workbench" };
+    const path = keys.length > whole.length ? `${name}[${keys.at(-1)}]` : name;
+    return { source: origin.sources[path] ?? origin.sources[`${name}[0]`] ?? (keys[0] === "gear" ? "not given" : "assumed by the workbench"), sigma: origin.sigmas[path] };
+  }
+  /** The parts of the drive as the page assumes them. */
+  assumedParts() {
+    const { drive, origin } = this.state, names = { motor: "motor", control: "controller", load: "load" };
+    return Object.keys(names).filter((part) => origin.drive && !origin.parts.includes(part) && sameValues(drive[part], origin.drive[part])).map((part) => names[part]);
+  }
   change(state, done, rebuild = false) {
     this.state = state;
     if (done) {
@@ -160,7 +186,7 @@ class Workbench {
       card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
         const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
         return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
-          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`]] };
+          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`], ...(which === "one" && this.assumes("hysteresis") ? [["from assumed numbers", ""]] : [])] };
       }, { takes: true, fits: ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
         const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
@@ -170,10 +196,10 @@ class Workbench {
         return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
       }),
       card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
-        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs));
+        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
         const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
         if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : [])] };
+        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
       }, { slow: true, controls: () => this.runControls() }),
       card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
@@ -197,6 +223,8 @@ class Workbench {
       }),
     ];
   }
+  /** True if a number of a part of the gear is assumed. */
+  assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.sourceOf(path).source.startsWith("assumed")); }
   buildCards() {
     this.cards = this.makeCards();
     by("plots").replaceChildren(...this.cards.map((card) => {
@@ -250,7 +278,8 @@ class Workbench {
   travelControls() {
     const wanted = this.view.travel.by === "torque" ? ["torque", "±", "torque"] : ["twist", "±", "angle"];
     const made = [this.choice(["travel", "history"], Object.keys(HISTORIES), "history of the twist"), this.choice(["travel", "by"], ["torque", "twist"], "travel given by"), ...this.numberControls("travel", [wanted])];
-    if (this.start.rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / this.start.rated, 3)} % of rated torque`);
+    const { rated } = this.state.origin;
+    if (rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque`);
     return made;
   }
   runControls() {
@@ -334,10 +363,9 @@ class Workbench {
     this.download(`${card.key}.csv`, `${lines.join("\n")}\n`);
   }
   toml() {
-    const original = flattened(this.schema, "Drive", completed(this.schema, "Drive", this.start.drive)), before = new Map(original.paths.map((path, i) => [path, original.numbers[i]]));
-    const now = flattened(this.schema, "Drive", this.state.drive), values = new Map(now.paths.map((path, i) => [path, now.numbers[i]]));
-    const sourceOf = (path) => (before.get(path) === values.get(path) && this.sources[path]) || "set in the workbench";
-    return gearToml(this.schema, this.state.name || "gear", this.state.drive, this.start.parts ?? [], sourceOf);
+    const { name, drive, origin } = this.state;
+    const parts = Object.keys(drive).filter((part) => part !== "gear" && (origin.parts.includes(part) || !origin.drive || !sameValues(drive[part], origin.drive[part])));
+    return gearToml(this.schema, name || "gear", drive, parts, (path) => this.sourceOf(path.split(".")).source);
   }
   python() {
     const { travel, friction, run } = this.view, { drive } = this.state;
@@ -357,35 +385,35 @@ class Workbench {
     ].join("\n");
   }
   async remember() {
-    const { name, drive, view } = this.state;
-    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view }))}`);
+    const { name, drive, view, origin } = this.state;
+    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view, origin: origin.key }))}`);
   }
   async open(fragment) {
     const given = await fromFragment(fragment);
-    this.change({ name: String(given.name ?? "").slice(0, 80), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view) }, true);
+    this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), origin: this.originOfLink(given.origin) }, true);
     this.showAll();
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
-    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change));
+    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.sourceOf(path));
     by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
-    by("name").onchange = () => this.change({ ...this.state, name: by("name").value.replace(/[\r\n]/g, " ") }, true);
+    by("name").onchange = () => this.change({ ...this.state, name: nameFrom(by("name").value) }, true);
     by("catalogue").append(...Object.keys(this.catalogue).map((name) => element("option", { value: name }, name)));
     by("catalogue").onchange = () => {
-      const chosen = this.catalogue[by("catalogue").value];
+      const key = by("catalogue").value, chosen = this.catalogue[key];
       by("catalogue").value = "";
       if (!chosen) return;
-      this.change({ ...this.state, name: chosen.name, drive: completed(this.schema, "Drive", chosen.drive), view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } } }, true);
-      this.start.rated = chosen.rated;
+      const origin = this.origin(key, chosen);
+      this.change({ name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
       this.showAll();
     };
     by("undo").onclick = () => this.travelBack(this.past, this.future);
     by("redo").onclick = () => this.travelBack(this.future, this.past);
-    by("keep").onclick = () => { this.other = { name: this.state.name || "kept", drive: this.state.drive }; this.draw(); };
+    by("keep").onclick = () => { const { name, drive, origin } = this.state; this.other = { name: name || "kept", drive, origin }; this.draw(); };
     by("forget").onclick = () => { this.other = null; this.draw(); };
-    by("swap").onclick = () => { const { drive, name } = this.other; this.other = { name: this.state.name, drive: this.state.drive }; this.change({ ...this.state, drive, name }, true); this.showAll(); };
+    by("swap").onclick = () => { const { name, drive, origin } = this.state, { other } = this; this.other = { name: name || "kept", drive, origin }; this.change({ ...this.state, ...other }, true); this.showAll(); };
     by("link").onclick = async () => {
       await this.remember();
       try { await navigator.clipboard.writeText(location.href); this.say("link copied"); } catch { this.ask("Link", location.href); }
