@@ -28,7 +28,9 @@ const TASKS = {
     workbench.state = { name: "made", drive: completed(schema, "Drive", given), origin: workbench.originOfLink(key) };
     return workbench.toml();
   }),
-  columns: ({ texts }) => texts.map((text) => { try { const { x, y } = twoColumns(text, 5); return [[...x], [...y]]; } catch (error) { return error.message; } }),
+  /** Why a fit of measured values is refused, without a core. */
+  refuse_fit: ({ numbers, measured }) => { try { fitted(() => null, numbers, numbers.map(() => ({})), numbers.map((_, i) => i), measured); } catch (error) { return error.message; } },
+  columns: ({ texts }) => texts.map((text) => { try { const { x, y, skipped } = twoColumns(text, 5); return [[...x], [...y], skipped]; } catch (error) { return error.message; } }),
   /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
   compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {
     const sets = setsOf(schema, completed(schema, "Drive", given));

@@ -152,11 +152,28 @@ def test_another_gear_has_no_source_of_the_first(tmp_path: Path, key: Any) -> No
 
 @needs_node
 def test_columns_of_measurements_are_read() -> None:
-    texts = ["a,b\n1,2\n3,-4e1\n", "1;2,5\n3;4,5", "1\t2\n\n3 4\n", "1 2", "\n".join(["1 2"] * 9)]
-    one, comma, blank, few, many = in_node("columns", texts=texts)
-    assert (one, comma, blank) == ([[1, 3], [2, -40]], [[1, 3], [2.5, 4.5]], [[1, 3], [2, 4]])
-    assert "no two columns" in few
-    assert "more than 5" in many
+    texts = {
+        "a,b\n1,2\n3,-4e1\n": [[1, 3], [2, -40], 1],
+        "1;2,5\n3;4,5": [[1, 3], [2.5, 4.5], 0],
+        "1,5\t2,3\n2,5\t4": [[1.5, 2.5], [2.3, 4], 0],
+        "1,5 2,3\n\n2.5 4 7\nend": [[1.5, 2.5], [2.3, 4], 1],
+        "1, 2\n3 ,4": [[1, 3], [2, 4], 0],
+        "1 2": "no two columns of numbers found",
+        "\n".join(["1 2"] * 9): "more than 5 points",
+    }
+    assert dict(zip(texts, in_node("columns", texts=list(texts)), strict=True)) == texts
+
+
+@needs_node
+def test_a_fit_needs_a_point_for_each_number() -> None:
+    assert "2 points do not determine 3 numbers" in in_node("refuse_fit", numbers=[1.0, 2.0, 3.0, 0.0], measured=[1.0, 2.0])
+    assert "all numbers are zero" in in_node("refuse_fit", numbers=[0.0], measured=[1.0, 2.0])
+
+
+def test_units_of_commands_are_those_of_the_drive() -> None:
+    of = {name: model["command"] for name, model in schema()["models"].items() if model["command"]}
+    assert (of["control.PID"], of["control.PI"], of["motor.TorqueSource"], of["motor.DC"]) == ("rad", "rad/s", "N.m", "V")
+    assert "control.Sampled" not in of
 
 
 def identified(**parts: Any) -> GearSet:

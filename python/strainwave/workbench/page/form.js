@@ -1,6 +1,7 @@
 // The form of all parameters, family by family, made from the schema.
 
 const FINE = 1.01, COARSE = 1.1; // factors of the arrow keys, without and with Shift
+const DIGITS = 7, MAX_SHOWN = 12; // of a number in its field, which is that wide
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
 
@@ -139,9 +140,15 @@ class Form {
     const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
     return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${low}${end(field.min, "−∞")}, ${end(field.max, "∞")}${high}`;
   }
-  shown({ path, factor }) { return String(Number((valueAt(this.get(), path) / factor).toPrecision(7))); }
+  shown({ path, factor, field }) {
+    const value = valueAt(this.get(), path) / factor, text = String(Number(value.toPrecision(DIGITS)));
+    if (field.kind === "whole" || field.kind === "count") return String(value);
+    return text.length > MAX_SHOWN ? value.toExponential(DIGITS - 1).replace(/\.?0+e/, "e") : text;
+  }
   refresh(row) {
     row.input.value = this.shown(row);
+    row.input.classList.remove("wrong");
+    row.input.setCustomValidity("");
     this.showSource(row);
   }
   showSource({ path, mark, source, made, factor }) {

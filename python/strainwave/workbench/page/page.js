@@ -83,7 +83,7 @@ class Workbench {
       if (!sameValues(this.saved, state)) { this.past.push(this.saved); if (this.past.length > MAX_UNDO) this.past.shift(); this.future = []; }
       this.saved = state;
     }
-    if (rebuild) this.form.build();
+    if (rebuild) { this.form.build(); this.buildControls(); }
     this.draw();
   }
   setDrive(path, value, done, rebuild) { this.change({ ...this.state, drive: replaced(this.state.drive, path, value) }, done, rebuild); }
@@ -198,8 +198,9 @@ class Workbench {
       card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
         const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
         const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
-        if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
+        const hasCommand = which === "one" && { "output angle": "rad", "output speed": "rad/s" }[this.view.run.shown] === this.commandUnit();
+        if (hasCommand) curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
+        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
       }, { slow: true, controls: () => this.runControls() }),
       card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
@@ -263,8 +264,8 @@ class Workbench {
     return menu;
   }
   numberControls(group, rows) {
-    return rows.map(([name, label, of]) => {
-      const { factor, text } = of ? this.unit(of) : { factor: 1, text: "" };
+    return rows.map(([name, label, of, unit]) => {
+      const { factor, text } = unit ?? (of ? this.unit(of) : { factor: 1, text: "" });
       const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
       input.onchange = () => {
         const value = numberOf(input.value) * factor;
@@ -282,9 +283,15 @@ class Workbench {
     if (rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque`);
     return made;
   }
+  /** Unit of the command: that of the controller, of the law that a sampled one contains, or of the motor in open loop. */
+  commandUnit() {
+    const { control, motor } = this.state.drive, models = Object.values(this.schema.models);
+    const of = ({ model }) => models.find(({ name, command }) => command && name === model)?.command;
+    return of(control.law?.model ? control.law : control) ?? of(motor);
+  }
   runControls() {
     const { command } = this.view.run;
-    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", ""], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
+    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", "", this.unitOf(this.commandUnit())], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
       this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
   }
   // ---- Effects -------------------------------------------------------------------------------------------------------
@@ -318,13 +325,14 @@ class Workbench {
   // ---- Measured data -------------------------------------------------------------------------------------------------
   askMeasured(card) {
     const [across, up] = card.axes();
-    this.ask(`Measured data: ${across.label}, ${up.label}, a line each`, "", (text) => this.takeMeasured(card, text), "Two columns, separated by comma, semicolon, tab or blanks. Empty removes them. A file can be dropped on the plot.");
+    this.ask(`Measured data: ${across.label}, ${up.label}, a line each`, "", (text) => this.takeMeasured(card, text), "Two columns, separated by semicolon, tab, blanks or comma. Empty removes them. A file can be dropped on the plot.");
   }
   takeMeasured(card, text) {
     try {
       if (text.trim() === "") delete this.measured[card.key];
       else {
-        const [across, up] = card.axes(), { x, y } = twoColumns(text, MAX_MEASURED);
+        const [across, up] = card.axes(), { x, y, skipped } = twoColumns(text, MAX_MEASURED);
+        this.say(`${x.length} points read${skipped ? `, ${skipped} ${skipped > 1 ? "rows" : "row"} skipped` : ""}`);
         this.measured[card.key] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
       }
       this.draw();
@@ -395,6 +403,7 @@ class Workbench {
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
+    this.say("");
     this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.sourceOf(path));
     by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
@@ -423,7 +432,7 @@ class Workbench {
     by("text-close").onclick = () => by("text").close();
     by("text-copy").onclick = () => { by("text-content").select(); navigator.clipboard?.writeText(by("text-content").value).catch(() => {}); };
     addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || ["INPUT", "TEXTAREA"].includes(document.activeElement?.tagName)) return;
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || document.activeElement?.matches("input:not([type=range]), textarea")) return;
       event.preventDefault();
       (event.shiftKey ? by("redo") : by("undo")).click();
     });
