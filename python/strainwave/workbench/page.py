@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from strainwave import Drive, Gear, control, loads, motor
+from strainwave import Drive, control, loads, motor
 from strainwave.files.entries import IDENTIFIED_SOURCE, NOT_GIVEN
 from strainwave.files.gear_set import GearSet, catalogue
 from strainwave.workbench.schema import values_of
@@ -108,7 +108,13 @@ def drive_around(gear_set: GearSet) -> Drive:
     if load is None:
         load = loads.Inertia(inertia=at_input * ratio**2)
     at_output = getattr(load, "inertia", 0.0) or at_input * ratio**2
-    return Drive(**({"control": _position_control(gear_set, source, at_input, at_output)} | own | {"gear": gear, "motor": source, "load": load}))
+    return Drive(
+        **(
+            {"control": _position_control(gear_set, source, at_input, at_output)}
+            | own
+            | {"gear": gear, "motor": source, "load": load}
+        )
+    )
 
 
 def own_parts(gear_set: GearSet) -> dict[str, Any]:
@@ -147,7 +153,8 @@ def _position_control(gear_set: GearSet, source: Any, at_input: float, at_output
 def changed(model: Any) -> dict[str, Any]:
     """Return the parameters of a model without those that have their default, which the page fills in.
 
-    >>> changed(Gear(damping=2.0))
+    >>> import strainwave as sw
+    >>> changed(sw.Gear(damping=2.0))
     {'damping': 2.0}
     """
     values = values_of(model)

@@ -169,6 +169,9 @@ def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
 @needs_page
 @pytest.mark.slow("report")
 def test_fields_take_numbers_alone_and_show_them_whole(tab: Any) -> None:
+    amplitude = tab.locator("#run .controls label", has_text="amplitude")
+    assert amplitude.text_content().strip() == "amplitude  arcmin"
+    assert "grey dashes: command" in readings(tab)["run"]
     field = tab.locator("#field-gear\\.stiffness\\.k1")
     before = field.input_value()
     field.fill("")
@@ -178,11 +181,16 @@ def test_fields_take_numbers_alone_and_show_them_whole(tab: Any) -> None:
     tab.locator("#law-gear\\.friction_input").select_option("viscous")
     assert field.input_value() == before
     tab.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    for path, long in (
+        ("input_inertia", "0.00012345678"),
+        ("kinematic_error\\.phase\\.0", "-0.000012345678"),
+        ("damping", "1234567891"),
+    ):
+        tab.locator(f"#field-gear\\.{path}").fill(long)
+        tab.locator(f"#field-gear\\.{path}").press("Enter")
+    assert tab.locator("#field-gear\\.input_inertia").input_value() == "1.234568e-4"
     cut = "inputs => inputs.filter(each => each.scrollWidth > each.clientWidth).map(each => each.id)"
     assert tab.locator("#fields input:not([type=range])").evaluate_all(cut) == []
-    amplitude = tab.locator("#run .controls label", has_text="amplitude")
-    assert amplitude.text_content().strip() == "amplitude  arcmin"
-    assert "grey dashes: command" in readings(tab)["run"]
 
 
 @needs_page

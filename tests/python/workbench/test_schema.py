@@ -100,7 +100,11 @@ def test_a_view_of_a_link_has_no_text_but_those_of_its_menus() -> None:
     evil = "step(amplitude=1, duration=1); print('mine'); sw.scenario.step"
     wrong: list[Any] = [
         {"run": {"command": evil, "shown": evil, "duration": 0, "amplitude": None}, "travel": {"by": evil, "history": evil}},
-        {"units": {"angle": evil, "torque": "__proto__"}, "effect": "constructor", "run": {"shown": "toString", "duration": -1}},
+        {
+            "units": {"angle": evil, "torque": "__proto__"},
+            "effect": "constructor",
+            "run": {"shown": "toString", "duration": -1},
+        },
         {"travel": {"history": "__proto__"}, "run": "command", "friction": {"maxSpeed": 0, "load": "1"}},
         None,
     ]
@@ -130,7 +134,9 @@ def test_a_sequence_keeps_its_source_only_if_all_of_it_is_unchanged(tmp_path: Pa
     drive, path = drive_around(gear_set), "gear.hysteresis.breakaway[0]"
     values = gear_set.gear.hysteresis.breakaway
     second = drive.replace({"gear.hysteresis.breakaway": [values[0], 0.5, values[2]]})
-    longer = drive.replace({"gear.hysteresis.breakaway": [*values, 0.1], "gear.hysteresis.stiffness": [9.146e3, 4.573e3, 2.287e3, 1e3]})
+    longer = drive.replace(
+        {"gear.hysteresis.breakaway": [*values, 0.1], "gear.hysteresis.stiffness": [9.146e3, 4.573e3, 2.287e3, 1e3]}
+    )
     limited = drive.replace({"control.limit": 3.0})
     same, one, more, control = exported(tmp_path, gear_set, gear_set.name, drive, second, longer, limited)
     assert same.sources[path] == gear_set.sources[path]

@@ -1,7 +1,7 @@
 // The form of all parameters, family by family, made from the schema.
 
 const FINE = 1.01, COARSE = 1.1; // factors of the arrow keys, without and with Shift
-const DIGITS = 7, MAX_SHOWN = 12; // of a number in its field, which is that wide
+const DIGITS = 7, MAX_SHOWN = 11; // of a number in its field, which is that wide
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
 
