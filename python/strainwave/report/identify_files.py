@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from importlib import metadata
 from io import StringIO
@@ -59,7 +60,8 @@ def identify_files(
     if accepted or not found.failed:
         files["gear.toml"] = gear_file.text(found.accepted)
         if workbench.is_installed():
-            files[WORKBENCH] = workbench.page(found.accepted)
+            with suppress(ValueError):  # of a drive that cannot be assumed: no page, but the report
+                files[WORKBENCH] = workbench.page(found.accepted)
     link = WORKBENCH if WORKBENCH in files else ""
     report = identify_report(found, provenance, accepted=accepted, folder=folder, remark=remark, workbench=link)
     return files | {"report.html": report}

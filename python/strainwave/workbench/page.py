@@ -9,7 +9,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from strainwave import Drive, Gear, control, loads, motor
+import numpy as np
+
+from strainwave import Drive, control, loads, motor
+from strainwave.files.entries import IDENTIFIED_SOURCE, NOT_GIVEN
 from strainwave.files.gear_set import GearSet, catalogue
 from strainwave.workbench.schema import values_of
 
@@ -18,7 +21,8 @@ MISSING = "the workbench is not installed: a wheel contains it, and python3 dev.
 BEGIN, END = '<script type="application/json" id="gear">', "</script>"
 FIRST_GEAR = "csg-20-100"  # of a page without a gear of its own: it has a rated torque
 TRAVEL_SHARE = 0.3  # of the rated torque: travel of the loop at first
-TORQUE_OF_STIFFNESS = 1e-3  # rad of twist: travel of the loop at first of a gear without rating
+TWIST_WITHOUT_RATING = 1e-3  # rad: travel of the loop at first of a gear without rating
+MIN_STIFFNESS = 1.0  # N.m/rad of the assumed controller's design
 BANDWIDTH_SHARE = 0.2  # of the natural frequency of the load on the gear's spring: bandwidth of the assumed controller
 MIN_INERTIA = 1e-6  # kg.m2 of the assumed rotor
 
@@ -47,13 +51,23 @@ def embedded(data: Any) -> str:
 
 def start_of(gear_set: GearSet) -> dict[str, Any]:
     """Return what the page begins with: the gear in a drive, what it is loaded with, and the sources of its numbers."""
-    sources = {path: entry.source for path, entry in gear_set.sources.items()}
-    return _entry(gear_set) | {"parts": list(_own_parts(gear_set)), "sources": sources}
+    parts = own_parts(gear_set)
+    own = {path: entry for path, entry in gear_set.sources.items() if path.partition(".")[0] in {"gear", *parts}}
+    sources = {path: entry.source for path, entry in own.items()}
+    is_identified = {path for path, source in sources.items() if source.startswith(IDENTIFIED_SOURCE)}
+    sigmas = {path: own[path].uncertainty for path in is_identified if own[path].uncertainty is not None}
+    return _entry(gear_set) | {"parts": list(parts), "sources": sources, "sigmas": sigmas}
 
 
 def entries() -> dict[str, Any]:
-    """Return the gears of the catalogue, by their names."""
-    return {name: _entry(GearSet.read(name)) for name in catalogue()}
+    """Return the gears of the catalogue, by their names, each number with a short source."""
+    gears = {name: GearSet.read(name) for name in catalogue()}
+    return {name: _entry(each) | {"sources": _short_sources(each, f"catalogue {each.name}")} for name, each in gears.items()}
+
+
+def _short_sources(gear_set: GearSet, source: str) -> dict[str, str]:
+    given = {path: entry for path, entry in gear_set.sources.items() if entry.source != NOT_GIVEN}
+    return {path: f"assumed: {source}" if entry.assumed else source for path, entry in given.items()}
 
 
 def _entry(gear_set: GearSet) -> dict[str, Any]:
@@ -75,49 +89,72 @@ def first_torque(gear_set: GearSet) -> float:
     """Return a travel [N.m] at which the loop of a gear shows."""
     if (rated := rated_torque(gear_set)) is not None:
         return TRAVEL_SHARE * rated
-    return float(f"{abs(float(gear_set.gear.stiffness.torque(TORQUE_OF_STIFFNESS))):.2g}") or 1.0
+    return float(f"{abs(float(gear_set.gear.stiffness.torque(TWIST_WITHOUT_RATING))):.2g}") or 1.0
 
 
 def drive_around(gear_set: GearSet) -> Drive:
-    """Return the drive of a set; what it lacks is assumed.
+    """Return the drive of a set; what `own_parts` lacks of motor, controller and load is assumed.
 
-    The load has the inertia of rotor and wave generator, referred to the output. The controller is a PID of the input angle
-    whose bandwidth lies well below the resonance of the load on the gear.
+    The motor follows its torque command. The load has the inertia of rotor and wave generator, referred to the output. The
+    controller is a PID of the input angle whose bandwidth lies well below the resonance of the load on the gear.
     """
-    gear = gear_set.gear
-    own = _own_parts(gear_set)
-    return Drive(gear=gear, **(own if {"motor", "control", "load"} <= own.keys() else own | _assumed(gear)))
+    gear, own = gear_set.gear, own_parts(gear_set)
+    source, load = own.get("motor"), own.get("load")
+    if source is None:
+        rotor = getattr(gear_set.motor, "inertia", 0.0) or max(gear.input_inertia, MIN_INERTIA)
+        source = motor.TorqueSource(inertia=rotor)
+    ratio = gear.kinematics.ratio
+    at_input = max(source.inertia + gear.input_inertia, MIN_INERTIA)
+    if load is None:
+        load = loads.Inertia(inertia=at_input * ratio**2)
+    at_output = getattr(load, "inertia", 0.0) or at_input * ratio**2
+    return Drive(
+        **(
+            {"control": _position_control(gear_set, source, at_input, at_output)}
+            | own
+            | {"gear": gear, "motor": source, "load": load}
+        )
+    )
 
 
-def _own_parts(gear_set: GearSet) -> dict[str, Any]:
-    """Return the parts of a drive, besides the gear, that a set has."""
+def own_parts(gear_set: GearSet) -> dict[str, Any]:
+    """Return the parts of a drive, besides the gear, that a set has and the page can use.
+
+    The assumed controller commands a torque or a current. If the controller is missing, any other motor is left out, and a
+    controller without its motor too.
+    """
     names = [field["name"] for field in Drive.fields if field["name"] != "gear"]
-    return {name: part for name in names if (part := getattr(gear_set, name)) is not None}
+    own = {name: part for name in names if (part := getattr(gear_set, name)) is not None}
+    if "motor" not in own:
+        own.pop("control", None)
+    elif "control" not in own and not isinstance(own["motor"], motor.TorqueSource | motor.CurrentSource):
+        del own["motor"]
+    return own
 
 
-def _assumed(gear: Gear) -> dict[str, Any]:
-    rotor = max(gear.input_inertia, MIN_INERTIA)
-    inertia = rotor + gear.input_inertia
-    load = inertia * gear.kinematics.ratio**2
-    stiffness = float(gear.stiffness.torque(TORQUE_OF_STIFFNESS)) / TORQUE_OF_STIFFNESS
-    rate = BANDWIDTH_SHARE * (stiffness / load) ** 0.5  # rad/s
-    proportional = 2.0 * inertia * rate**2
-    return {
-        "motor": motor.TorqueSource(inertia=rotor),
-        "load": loads.Inertia(inertia=load),
-        "control": control.PID(
-            proportional=proportional,
-            integral=0.2 * rate * proportional,
-            derivative=4.0 * inertia * rate,
-            limit=abs(gear.kinematics.ratio) * proportional,  # for an error of one radian at the output
-        ),
-    }
+def _position_control(gear_set: GearSet, source: Any, at_input: float, at_output: float) -> control.PID:
+    gear, ratio = gear_set.gear, abs(gear_set.gear.kinematics.ratio)
+    torque = first_torque(gear_set)
+    twist = float(gear.twist(np.array([torque]))[0])
+    stiffness = max(torque / twist, MIN_STIFFNESS) if twist > 0.0 else MIN_STIFFNESS  # NaN if the spring is limited
+    rate = BANDWIDTH_SHARE * (stiffness / at_output) ** 0.5  # rad/s
+    inertia = at_input + at_output / ratio**2
+    gravity = abs(getattr(gear_set.load, "gravity_torque", 0.0)) / ratio  # at the input, for each radian of the output at most
+    per_torque = 1.0 / getattr(source, "torque_constant", 1.0)
+    proportional = inertia * rate**2 + gravity / ratio
+    return control.PID(
+        proportional=per_torque * proportional,
+        integral=per_torque * 0.2 * rate * proportional,
+        derivative=per_torque * 2.0 * rate * inertia,
+        limit=per_torque * (ratio * proportional + 2.0 * gravity),  # for an error of one radian at the output
+    )
 
 
 def changed(model: Any) -> dict[str, Any]:
     """Return the parameters of a model without those that have their default, which the page fills in.
 
-    >>> changed(Gear(damping=2.0))
+    >>> import strainwave as sw
+    >>> changed(sw.Gear(damping=2.0))
     {'damping': 2.0}
     """
     values = values_of(model)

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 from inspect import cleandoc
 from typing import Any
 
-from strainwave import Drive
+from strainwave import Drive, control, motor
 from strainwave.files.units import convert
+from strainwave.simulation.signals import command_unit
 
 UNITS = {  # of the menus of the page, SI first
     "angle": ("rad", "mrad", "deg", "arcmin", "arcsec"),
@@ -82,8 +83,18 @@ def _describe(kind: type[Any], models: dict[str, Any]) -> str:
             "doc": text,
             "source": getattr(kind, "source", ""),
             "fields": [_field(field, models) for field in kind.fields],
+            "command": _command_unit(kind),
         }
     return name
+
+
+def _command_unit(kind: type[Any]) -> str:
+    """Return the unit of the command of a controller, or of a motor in open loop; empty if a part decides it."""
+    if kind.__module__ == motor.__name__:
+        return command_unit(Drive(motor=kind()))
+    if kind.__module__ != control.__name__ or kind in (control.OpenLoop, control.Sampled):
+        return ""
+    return command_unit(Drive(motor=motor.DC(inductance=1e-3), control=kind()))
 
 
 def _field(field: Mapping[str, Any], models: dict[str, Any]) -> dict[str, Any]:

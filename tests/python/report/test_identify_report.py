@@ -172,6 +172,14 @@ def test_the_gear_is_in_the_workbench_beside_the_report_if_that_is_installed(
     assert (before, json.loads(content.removesuffix(f"{END}<p>after</p>"))["name"]) == ("<p>before</p>", found.accepted.name)
     assert link in files["report.html"]
 
+    def refused(_: GearSet) -> str:
+        raise ValueError("no drive")
+
+    monkeypatch.setattr("strainwave.workbench.page.page", refused)
+    files = identify_files(found, accepted=True)
+    assert "workbench.html" not in files
+    assert link not in files["report.html"]
+
 
 def test_parameters_are_grouped_by_effect(page: str) -> None:
     headings = [each.text for each in section(page, "parameters").find("th") if each.attributes.get("scope") == "rowgroup"]

@@ -6,7 +6,7 @@ const { gunzipSync } = require("node:zlib");
 const { runInThisContext } = require("node:vm");
 
 const [scripts, page] = process.argv.slice(2);
-runInThisContext(`${["model", "core", "curves", "fit"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
+runInThisContext(`${["model", "core", "curves", "fit", "plots", "form", "page"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
 const bytesOf = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64");
 
 const TASKS = {
@@ -17,7 +17,20 @@ const TASKS = {
   }),
   refuse: ({ schema, given }) => given.map((each) => { try { completed(schema, "Drive", each); return ""; } catch (error) { return error.message; } }),
   link: async ({ data, texts }) => [await fromFragment(await toFragment(data)), ...(await Promise.all(texts.map((text) => fromFragment(text).catch((error) => String(error.message)))))],
-  columns: ({ texts }) => texts.map((text) => { try { const { x, y } = twoColumns(text, 5); return [[...x], [...y]]; } catch (error) { return error.message; } }),
+  /** Views of links, and Python with each. */
+  views: ({ schema, drive, given }) => given.map((each) => {
+    const view = viewFrom(schema, each);
+    return [view, Workbench.prototype.python.call({ schema, view, state: { drive: completed(schema, "Drive", drive) } })];
+  }),
+  /** gear.toml of drives that follow on a gear of the page. */
+  export: ({ schema, start, catalogue, key, drives }) => drives.map((given) => {
+    const workbench = Object.assign(Object.create(Workbench.prototype), { schema, start, catalogue });
+    workbench.state = { name: "made", drive: completed(schema, "Drive", given), origin: workbench.originOfLink(key) };
+    return workbench.toml();
+  }),
+  /** Why a fit of measured values is refused, without a core. */
+  refuse_fit: ({ numbers, measured }) => { try { fitted(() => null, numbers, numbers.map(() => ({})), numbers.map((_, i) => i), measured); } catch (error) { return error.message; } },
+  columns: ({ texts }) => texts.map((text) => { try { const { x, y, skipped } = twoColumns(text, 5); return [[...x], [...y], skipped]; } catch (error) { return error.message; } }),
   /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
   compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {
     const sets = setsOf(schema, completed(schema, "Drive", given));

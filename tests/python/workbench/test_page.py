@@ -151,6 +151,63 @@ def test_exports_contain_the_gear_as_changed(tab: Any, tmp_path: Path) -> None:
 
 @needs_page
 @pytest.mark.slow("report")
+def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
+    row = tab.locator(".row", has=tab.locator("#field-gear\\.hysteresis\\.breakaway\\.0"))
+    assert row.locator(".mark").text_content() == "assumed"
+    assert "Source: assumed: k1 x 0.5 arcmin" in row.get_attribute("title")
+    shown = readings(tab)
+    assert "from assumed numbers" in shown["loop"]
+    assert "motor, controller and load are assumed" in shown["run"]
+    tab.locator("#catalogue").select_option("hfuc-25-100")
+    assert row.get_attribute("title") == "Source: assumed: catalogue HFUC-25-100"
+    assert "rated torque" not in tab.locator("#loop").text_content()
+    tab.locator("#undo").click()
+    assert "30 % of rated torque" in tab.locator("#loop").text_content()
+    assert "Source: assumed: k1 x 0.5 arcmin" in row.get_attribute("title")
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_fields_take_numbers_alone_and_show_them_whole(tab: Any) -> None:
+    amplitude = tab.locator("#run .controls label", has_text="amplitude")
+    assert amplitude.text_content().strip() == "amplitude  arcmin"
+    assert "grey dashes: command" in readings(tab)["run"]
+    field = tab.locator("#field-gear\\.stiffness\\.k1")
+    before = field.input_value()
+    field.fill("")
+    field.press("Enter")
+    assert field.evaluate("each => each.validationMessage") == "must be a number"
+    assert tab.evaluate("workbench.then(each => each.state.drive.gear.stiffness.k1)") == 13719.5
+    tab.locator("#law-gear\\.friction_input").select_option("viscous")
+    assert field.input_value() == before
+    tab.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    for path, long in (
+        ("input_inertia", "0.00012345678"),
+        ("kinematic_error\\.phase\\.0", "-0.000012345678"),
+        ("damping", "1234567891"),
+    ):
+        tab.locator(f"#field-gear\\.{path}").fill(long)
+        tab.locator(f"#field-gear\\.{path}").press("Enter")
+    assert tab.locator("#field-gear\\.input_inertia").input_value() == "1.234568e-4"
+    cut = "inputs => inputs.filter(each => each.scrollWidth > each.clientWidth).map(each => each.id)"
+    assert tab.locator("#fields input:not([type=range])").evaluate_all(cut) == []
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_undo_works_from_a_slider_and_a_name_has_whole_characters(tab: Any) -> None:
+    tab.evaluate(r"""() => {
+        document.getElementById("name").value = "a\ud800\u2028b";
+        document.getElementById("name").onchange();
+    }""")
+    assert tab.evaluate("workbench.then(each => each.state.name)") == "a\ufffd b"
+    tab.locator("input[type=range]").first.focus()
+    tab.keyboard.press("Control+z")
+    assert tab.locator("#name").input_value() == "CSG-20-100"
+
+
+@needs_page
+@pytest.mark.slow("report")
 def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
     tab.locator("#friction").get_by_role("button", name="Data…").click()
     friction = sw.load("csg-20-100").friction_input
@@ -159,6 +216,7 @@ def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
     lines += [f"{speed + 1},{friction.steady((speed + 1) * rpm) - 0.01}" for speed in range(10, 1000, 10)]
     tab.locator("#text-content").fill("\n".join(lines))
     tab.locator("#text-use").click()
+    assert tab.locator("#status").text_content() == "198 points read"
     assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
     field = tab.locator("#field-gear\\.friction_input\\.viscous")
     field.fill("0.01")

@@ -10,7 +10,7 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 from strainwave.files.gear_set import GearSet
-from strainwave.workbench.page import changed, drive_around, embedded
+from strainwave.workbench.page import changed, drive_around, embedded, start_of
 from strainwave.workbench.schema import model_of, schema, values_of
 
 from tests.python.workbench.node import doubles, in_node, needs_node
@@ -96,12 +96,121 @@ def test_what_is_no_drive_is_refused_with_its_place() -> None:
 
 
 @needs_node
+def test_a_view_of_a_link_has_no_text_but_those_of_its_menus() -> None:
+    evil = "step(amplitude=1, duration=1); print('mine'); sw.scenario.step"
+    wrong: list[Any] = [
+        {"run": {"command": evil, "shown": evil, "duration": 0, "amplitude": None}, "travel": {"by": evil, "history": evil}},
+        {
+            "units": {"angle": evil, "torque": "__proto__"},
+            "effect": "constructor",
+            "run": {"shown": "toString", "duration": -1},
+        },
+        {"travel": {"history": "__proto__"}, "run": "command", "friction": {"maxSpeed": 0, "load": "1"}},
+        None,
+    ]
+    short = {"gear": {"damping": 3.0}}
+    good = {"run": {"command": "sine", "duration": 0.25}, "units": {"angle": "deg"}}
+    *refused, (view, text) = in_node("views", schema=schema(), drive=short, given=[*wrong, good])
+    assert refused == [refused[-1]] * len(wrong)
+    assert "sw.scenario.step(amplitude=0.1, duration=0.5)" in refused[0][1]
+    assert (view["run"]["command"], view["run"]["duration"], view["units"]["angle"]) == ("sine", 0.25, "deg")
+    names: dict[str, Any] = {}
+    exec(text, names)
+    assert names["drive"].gear == sw.Gear(damping=3.0)
+
+
+def exported(tmp_path: Path, gear_set: GearSet, key: Any, *drives: sw.Drive) -> list[GearSet]:
+    """Return the gear files of drives that a page with a set writes; `key` names the gear that they come from."""
+    start, entry = start_of(gear_set), start_of(GearSet.read("hfuc-25-100"))
+    given = [changed(drive) for drive in drives]
+    texts = in_node("export", schema=schema(), start=start, catalogue={"hfuc-25-100": entry}, key=key, drives=given)
+    path = tmp_path / "gear.toml"
+    return [GearSet.read(path) for text in texts if path.write_text(text)]
+
+
+@needs_node
+def test_a_sequence_keeps_its_source_only_if_all_of_it_is_unchanged(tmp_path: Path) -> None:
+    gear_set = GearSet.read("csg-20-100")
+    drive, path = drive_around(gear_set), "gear.hysteresis.breakaway[0]"
+    values = gear_set.gear.hysteresis.breakaway
+    second = drive.replace({"gear.hysteresis.breakaway": [values[0], 0.5, values[2]]})
+    longer = drive.replace(
+        {"gear.hysteresis.breakaway": [*values, 0.1], "gear.hysteresis.stiffness": [9.146e3, 4.573e3, 2.287e3, 1e3]}
+    )
+    limited = drive.replace({"control.limit": 3.0})
+    same, one, more, control = exported(tmp_path, gear_set, gear_set.name, drive, second, longer, limited)
+    assert same.sources[path] == gear_set.sources[path]
+    assert same.control is None
+    assert one.sources[path].source == more.sources[path].source == "set in the workbench"
+    assert control.sources["control.limit"].source == "set in the workbench"
+    assert control.sources["control.proportional"].source == "assumed by the workbench"
+
+
+@needs_node
+@pytest.mark.parametrize("key", ["hfuc-25-100", "another", "__proto__", 3])
+def test_another_gear_has_no_source_of_the_first(tmp_path: Path, key: Any) -> None:
+    first, chosen = GearSet.read("csg-20-100"), GearSet.read("hfuc-25-100")
+    (made,) = exported(tmp_path, first, key, drive_around(first))
+    assert made.gear == first.gear
+    mine = {entry.source for path, entry in first.sources.items() if entry not in chosen.sources.values()}
+    assert not mine & {entry.source for entry in made.sources.values()}
+
+
+@needs_node
 def test_columns_of_measurements_are_read() -> None:
-    texts = ["a,b\n1,2\n3,-4e1\n", "1;2,5\n3;4,5", "1\t2\n\n3 4\n", "1 2", "\n".join(["1 2"] * 9)]
-    one, comma, blank, few, many = in_node("columns", texts=texts)
-    assert (one, comma, blank) == ([[1, 3], [2, -40]], [[1, 3], [2.5, 4.5]], [[1, 3], [2, 4]])
-    assert "no two columns" in few
-    assert "more than 5" in many
+    texts = {
+        "a,b\n1,2\n3,-4e1\n": [[1, 3], [2, -40], 1],
+        "1;2,5\n3;4,5": [[1, 3], [2.5, 4.5], 0],
+        "1,5\t2,3\n2,5\t4": [[1.5, 2.5], [2.3, 4], 0],
+        "1,5 2,3\n\n2.5 4 7\nend": [[1.5, 2.5], [2.3, 4], 1],
+        "1, 2\n3 ,4": [[1, 3], [2, 4], 0],
+        "1 2": "no two columns of numbers found",
+        "\n".join(["1 2"] * 9): "more than 5 points",
+    }
+    assert dict(zip(texts, in_node("columns", texts=list(texts)), strict=True)) == texts
+
+
+@needs_node
+def test_a_fit_needs_a_point_for_each_number() -> None:
+    assert "2 points do not determine 3 numbers" in in_node("refuse_fit", numbers=[1.0, 2.0, 3.0, 0.0], measured=[1.0, 2.0])
+    assert "all numbers are zero" in in_node("refuse_fit", numbers=[0.0], measured=[1.0, 2.0])
+
+
+def test_units_of_commands_are_those_of_the_drive() -> None:
+    of = {name: model["command"] for name, model in schema()["models"].items() if model["command"]}
+    assert (of["control.PID"], of["control.PI"], of["motor.TorqueSource"], of["motor.DC"]) == ("rad", "rad/s", "N.m", "V")
+    assert "control.Sampled" not in of
+
+
+def identified(**parts: Any) -> GearSet:
+    """Return a gear set as from a log: of the drive, the parts given."""
+    whole = GearSet.of(sw.Drive(gear=sw.load("csg-20-100"), **parts), name="joint", source="identified from log.csv")
+    sources = {path: entry for path, entry in whole.sources.items() if path.partition(".")[0] in {"gear", *parts}}
+    others = {"motor", "control", "load", "sensors", "thermal", "meter"} - parts.keys()
+    return whole.replace(sources=sources, **dict.fromkeys(others))
+
+
+def test_a_drive_has_the_parts_of_its_set_and_a_controller_that_holds_them() -> None:
+    source, load = sw.motor.CurrentSource(torque_constant=0.1, inertia=0.0), sw.loads.Pendulum(inertia=1.0, gravity_torque=25.0)
+    gear_set = identified(motor=source, load=load)
+    drive = drive_around(gear_set)
+    assert (drive.motor, drive.load, start_of(gear_set)["parts"]) == (source, load, ["motor", "load"])
+    run = sw.simulate(drive, sw.scenario.step(amplitude=0.5, duration=8.0))
+    assert run["output_angle"][-1] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_motor_that_takes_a_voltage_is_replaced_and_its_sources_are_left_out() -> None:
+    gear_set = identified(motor=sw.motor.DC(inertia=3e-5))
+    start = start_of(gear_set)
+    assert drive_around(gear_set).motor == sw.motor.TorqueSource(inertia=3e-5)
+    assert "motor" not in start["parts"]
+    assert not [path for path in start["sources"] if path.startswith(("motor.", "control."))]
+
+
+@pytest.mark.parametrize("law", [sw.stiffness.Backlash(clearance=0.0025), sw.stiffness.Linear(k=1e-6)])
+def test_a_gear_within_its_play_has_a_drive(law: Any) -> None:
+    gear_set = GearSet.of(sw.Gear(stiffness=law), name="play", source="measured")
+    assert drive_around(gear_set).control.limit > 0.0
 
 
 def test_no_text_of_a_gear_ends_its_element() -> None:

@@ -144,17 +144,24 @@ function rmsOf(one, other) {
   for (let i = 0; i < one.length; i++) if (Number.isFinite(one[i] - other[i])) { sum += (one[i] - other[i]) ** 2; count++; }
   return { rms: Math.sqrt(sum / count), count };
 }
-/** Two columns of numbers from a text, separated by comma, semicolon, tab or blanks; lines without two numbers are skipped. */
+/** The separator of columns of a line: semicolon, else tab, else blanks, else comma. Only there is a comma no decimal sign. */
+function separatorOf(line) {
+  if (line.includes(";")) return ";";
+  if (line.includes("\t")) return "\t";
+  return /\s/.test(line) ? /\s*,\s+|\s+,\s*|\s+/ : ",";
+}
+/** Two columns of numbers from a text, and how many lines were skipped because they are no two numbers. */
 function twoColumns(text, most) {
   const x = [], y = [];
-  for (const line of text.split(/\r?\n/)) {
-    const words = line.trim().split(line.includes(";") ? /\s*;\s*/ : /\s*[,\t]\s*|\s+/);
-    const [one, other] = words.slice(0, 2).map((word) => (word === "" ? NaN : Number(line.includes(";") ? word.replace(",", ".") : word)));
-    if (!Number.isFinite(one) || !Number.isFinite(other)) continue;
+  let skipped = 0;
+  for (const line of text.split(/\r?\n/).map((each) => each.trim()).filter(Boolean)) {
+    const separator = separatorOf(line), words = line.split(separator).map((word) => word.trim());
+    const [one, other] = words.slice(0, 2).map((word) => (word === "" ? NaN : Number(separator === "," ? word : word.replace(",", "."))));
+    if (!Number.isFinite(one) || !Number.isFinite(other)) { skipped++; continue; }
     x.push(one);
     y.push(other);
     if (x.length > most) throw new Error(`more than ${most} points`);
   }
   if (x.length < 2) throw new Error("no two columns of numbers found");
-  return { x: Float64Array.from(x), y: Float64Array.from(y) };
+  return { x: Float64Array.from(x), y: Float64Array.from(y), skipped };
 }

@@ -13,6 +13,8 @@ const MAX_LOG_STEP = 1.0; // of the logarithm of a number in one step
  */
 function fitted(compute, numbers, fields, places, measured) {
   const free = places.filter((place) => numbers[place] !== 0), inLogs = free.map((place) => (fields[place].min ?? -1) >= 0), n = measured.length;
+  if (!free.length) throw new Error("all numbers are zero, which the fit keeps: change one first");
+  if (n < free.length) throw new Error(`${n} points do not determine ${free.length} numbers: measure more, or set numbers to zero`);
   const squares = (values) => values.reduce((sum, value, i) => sum + (value - measured[i]) ** 2, 0);
   const at = (trial) => {
     const { values, slopes } = compute(trial, free);

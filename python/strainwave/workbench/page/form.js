@@ -1,8 +1,12 @@
 // The form of all parameters, family by family, made from the schema.
 
 const FINE = 1.01, COARSE = 1.1; // factors of the arrow keys, without and with Shift
+const DIGITS = 7, MAX_SHOWN = 11; // of a number in its field, which is that wide
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
+
+/** The number of a field; NaN if it is empty or has none. */
+const numberOf = (text) => (text.trim() ? Number(text.trim().replace(",", ".")) : NaN);
 
 function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
@@ -20,9 +24,9 @@ const select = (options, value, properties = {}) => {
 };
 
 class Form {
-  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete. */
-  constructor(root, schema, unitOf, get, set) {
-    Object.assign(this, { root, schema, unitOf, get, set, rows: new Map(), open: new Set(), used: new Set() });
+  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `sourceOf(path)` its source. */
+  constructor(root, schema, unitOf, get, set, sourceOf) {
+    Object.assign(this, { root, schema, unitOf, get, set, sourceOf, rows: new Map(), open: new Set(), used: new Set() });
   }
   /** Anew: a law, a length or a unit is another. */
   build() {
@@ -95,7 +99,9 @@ class Form {
     const slider = element("input", { type: "range", min: -100, max: 100, value: 0, step: 1, tabIndex: -1, "aria-label": `change ${label}` });
     const effect = element("span", { className: "effect" });
     const doc = element("div", { className: "doc", id: `doc-${key}` }, this.limits(field, text, factor));
-    const row = { field, path, input, slider, effect, factor };
+    const mark = element("small", { className: "mark" }), source = element("div", { className: "doc" });
+    const made = element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text), " ", mark), input, slider, effect, doc, source);
+    const row = { field, path, input, slider, effect, factor, mark, source, made };
     const put = (value, done) => {
       const wrong = problemOf(field, value);
       input.classList.toggle("wrong", Boolean(wrong));
@@ -104,7 +110,7 @@ class Form {
       if (!wrong) this.set(path, value, done);
       return !wrong;
     };
-    input.onchange = () => { if (put(Number(input.value.replace(",", ".")) * factor, true)) this.refresh(row); };
+    input.onchange = () => { if (put(numberOf(input.value) * factor, true)) this.refresh(row); };
     input.onkeydown = (event) => {
       if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
       event.preventDefault();
@@ -126,17 +132,31 @@ class Form {
     };
     slider.onchange = () => { base = null; slider.value = 0; this.set(path, valueAt(this.get(), path), true); };
     this.rows.set(key, row);
-    input.value = this.shown(row);
-    return element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text)), input, slider, effect, doc);
+    this.refresh(row);
+    return made;
   }
   limits(field, unit, factor) {
     const end = (value, none) => (value === undefined ? none : shortText(value / factor));
-const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
+    const low = field.open || field.min === undefined ? "(" : "[", high = field.max === undefined ? ")" : "]";
     return `${field.doc}${unit ? ` [${unit}]` : ""}, in ${low}${end(field.min, "−∞")}, ${end(field.max, "∞")}${high}`;
   }
-  shown({ path, factor }) { return String(Number((valueAt(this.get(), path) / factor).toPrecision(7))); }
-  refresh(row) { row.input.value = this.shown(row); }
-  refreshAll() { for (const row of this.rows.values()) if (row.input !== document.activeElement) this.refresh(row); }
+  shown({ path, factor, field }) {
+    const value = valueAt(this.get(), path) / factor, text = String(Number(value.toPrecision(DIGITS)));
+    if (field.kind === "whole" || field.kind === "count") return String(value);
+    return text.length > MAX_SHOWN ? value.toExponential(DIGITS - 1).replace(/\.?0+e/, "e") : text;
+  }
+  refresh(row) {
+    row.input.value = this.shown(row);
+    row.input.classList.remove("wrong");
+    row.input.setCustomValidity("");
+    this.showSource(row);
+  }
+  showSource({ path, mark, source, made, factor }) {
+    const { source: text, sigma } = this.sourceOf(path);
+    mark.textContent = sigma !== undefined ? `identified ± ${shortText(sigma / factor, 2)}` : text.startsWith("assumed") ? "assumed" : "";
+    made.title = source.textContent = `Source: ${text}`;
+  }
+  refreshAll() { for (const row of this.rows.values()) if (row.input === document.activeElement) this.showSource(row); else this.refresh(row); }
 }
 
 /** Scale of a slider whose number is zero: the default of its field, else an angle of a turn, else one. */

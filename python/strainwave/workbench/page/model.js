@@ -96,7 +96,7 @@ function replaced(values, path, value) {
   copy[head] = rest.length ? replaced(values[head], rest, value) : value;
   return copy;
 }
-const valueAt = (values, path) => path.reduce((inner, key) => inner[key], values);
+const valueAt = (values, path) => path.reduce((inner, key) => inner?.[key], values);
 
 function sameValues(one, other) {
   return JSON.stringify(one) === JSON.stringify(other);
@@ -111,7 +111,7 @@ function floatText(value) {
 }
 const numberText = (field, value) => (field.kind === "whole" ? String(value) : floatText(value));
 
-/** The lines of gear.toml. `sourceOf(path)` is the source of a number, as "gear.stiffness.k1". */
+/** The lines of gear.toml. `sourceOf(path)` is the source of a number or sequence, as "gear.stiffness.k1". */
 function gearToml(schema, name, drive, families, sourceOf) {
   const lines = [`name = ${JSON.stringify(name)}`];
   const table = (header, id, chosen, values, path) => {
@@ -125,8 +125,7 @@ function gearToml(schema, name, drive, families, sourceOf) {
       else if (field.kind === "sequence" && !value.length) lines.push(`${field.name} = []`);
       else {
         const written = field.kind === "sequence" ? `[${value.map(floatText).join(", ")}]` : numberText(field, value);
-        const source = sourceOf(field.kind === "sequence" ? `${place}[0]` : place);
-        lines.push(`${field.name} = { value = ${written}, unit = ${unit}, source = ${JSON.stringify(source)} }`);
+        lines.push(`${field.name} = { value = ${written}, unit = ${unit}, source = ${JSON.stringify(sourceOf(place))} }`);
       }
     }
     for (const [field, value, place] of inner) table(`${header}.${field.name}`, modelOf(schema, field, value), field.chosen, value, place);
@@ -143,13 +142,14 @@ function gearToml(schema, name, drive, families, sourceOf) {
   return `${lines.join("\n")}\n`;
 }
 
-/** A model as a Python expression; parts and numbers that have their default are left out. */
-function pythonOf(schema, id, values, indent = "") {
+/** A model as a Python expression; parts and numbers that have their default are left out. `texts` replace members. */
+function pythonOf(schema, id, values, indent = "", texts = {}) {
   const deeper = `${indent}    `, lines = [];
   for (const field of schema.models[id].fields) {
     const value = values[field.name], otherwise = field.follows ? values[field.follows] : field.default;
     if (!field.required && sameValues(value, otherwise)) continue;
-    if (field.kind === "part") lines.push(`${field.name}=${pythonOf(schema, modelOf(schema, field, value), value, deeper)}`);
+    if (texts[field.name]) lines.push(`${field.name}=${texts[field.name]}`);
+    else if (field.kind === "part") lines.push(`${field.name}=${pythonOf(schema, modelOf(schema, field, value), value, deeper)}`);
     else if (field.kind === "choice") lines.push(`${field.name}=${JSON.stringify(value)}`);
     else if (field.kind === "sequence") lines.push(`${field.name}=[${value.map(floatText).join(", ")}]`);
     else lines.push(`${field.name}=${numberText(field, value)}`);

@@ -19,14 +19,24 @@ const VIEW = {
   effect: "loop width",
 };
 
-/** A view from a link: numbers, names and flags of the kinds that VIEW has; all else is left out. */
-function viewFrom(given, like = VIEW) {
+const EFFECTS = ["loop width", "mean stiffness", "friction at speed", "kinematic error"];
+const POSITIVE = ["duration", "frequency", "maxSpeed", "temperature"]; // numbers of a view
+
+/** A view from a link: finite numbers, and texts that their menus have; the rest is as in VIEW. */
+function viewFrom(schema, given, like = VIEW) {
+  const texts = { by: ["torque", "twist"], history: Object.keys(HISTORIES), command: ["step", "sine"], shown: Object.keys(OUTPUTS), effect: EFFECTS };
+  if (like === VIEW.units) for (const of in like) texts[of] = Object.keys(schema.units[of]);
+  const allowed = (key, value) => (typeof value === "number" ? Number.isFinite(value) && (value > 0 || !POSITIVE.includes(key)) : texts[key].includes(value));
   return Object.fromEntries(Object.entries(like).map(([key, value]) => {
-    const other = given?.[key];
-    if (typeof value === "object") return [key, viewFrom(other, value)];
-    return [key, typeof other === typeof value && (typeof other !== "number" || Number.isFinite(other)) ? other : value];
+    const other = given && Object.hasOwn(given, key) ? given[key] : undefined;
+    if (typeof value === "object") return [key, viewFrom(schema, other, value)];
+    return [key, typeof other === typeof value && allowed(key, other) ? other : value];
   }));
 }
+
+/** A name of one line, of whole characters. */
+const nameFrom = (text) => text.slice(0, 80).toWellFormed().replace(/[\p{Cc}\p{Zl}\p{Zp}]/gu, " ");
+const sentence = (names) => `${[names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ")} ${names.length > 1 ? "are" : "is"} assumed`;
 
 /** A function of the sets of a drive whose result several plots of one frame share. */
 function sharedByPlots(of) {
@@ -39,19 +49,41 @@ function sharedByPlots(of) {
 
 class Workbench {
   constructor(core, schema, catalogue, start) {
-    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, sources: start.sources ?? {} });
-    this.state = { name: start.name, drive: completed(schema, "Drive", start.drive), view: viewFrom({ travel: start.travel }) };
+    Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, });
+    const origin = this.origin(start.name, start);
+    this.state = { name: start.name, drive: origin.drive, view: viewFrom(schema, { travel: start.travel }), origin };
     this.saved = this.state;
   }
   // ---- State ---------------------------------------------------------------------------------------------------------
   get view() { return this.state.view; }
+  /** Where the numbers of a state come from: of a gear that the page contains, else nothing. It goes with the state through Undo. */
+  origin(key, gear) {
+    const { sources = {}, sigmas = {}, rated = null, parts = [] } = gear ?? {};
+    return { key, sources, sigmas, rated, parts, drive: gear ? completed(this.schema, "Drive", gear.drive) : null };
+  }
+  originOfLink(key) {
+    if (key === this.start.name) return this.origin(key, this.start);
+    return this.origin(key, typeof key === "string" && Object.hasOwn(this.catalogue, key) ? this.catalogue[key] : null);
+  }
+  /** Source of the number at these keys, and its standard deviation if identified. A sequence has its source as a whole. */
+  sourceOf(keys) {
+    const { drive, origin } = this.state, whole = keys.filter((key) => typeof key === "string"), name = whole.join(".");
+    if (!origin.drive || !sameValues(valueAt(drive, whole), valueAt(origin.drive, whole))) return { source: "set in the workbench" };
+    const path = keys.length > whole.length ? `${name}[${keys.at(-1)}]` : name;
+    return { source: origin.sources[path] ?? origin.sources[`${name}[0]`] ?? (keys[0] === "gear" ? "not given" : "assumed by the workbench"), sigma: origin.sigmas[path] };
+  }
+  /** The parts of the drive as the page assumes them. */
+  assumedParts() {
+    const { drive, origin } = this.state, names = { motor: "motor", control: "controller", load: "load" };
+    return Object.keys(names).filter((part) => origin.drive && !origin.parts.includes(part) && sameValues(drive[part], origin.drive[part])).map((part) => names[part]);
+  }
   change(state, done, rebuild = false) {
     this.state = state;
     if (done) {
       if (!sameValues(this.saved, state)) { this.past.push(this.saved); if (this.past.length > MAX_UNDO) this.past.shift(); this.future = []; }
       this.saved = state;
     }
-    if (rebuild) this.form.build();
+    if (rebuild) { this.form.build(); this.buildControls(); }
     this.draw();
   }
   setDrive(path, value, done, rebuild) { this.change({ ...this.state, drive: replaced(this.state.drive, path, value) }, done, rebuild); }
@@ -148,13 +180,13 @@ class Workbench {
     const perAngle = () => this.unitOf("N.m/rad");
     const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
     const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
-    const output = () => OUTPUTS[this.view.run.shown] ?? OUTPUTS["output angle"];
+    const output = () => OUTPUTS[this.view.run.shown];
     const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
     return [
       card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
         const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
         return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
-          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`]] };
+          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`], ...(which === "one" && this.assumes("hysteresis") ? [["from assumed numbers", ""]] : [])] };
       }, { takes: true, fits: ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
         const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
@@ -164,10 +196,11 @@ class Workbench {
         return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
       }),
       card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
-        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs));
+        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
         const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
-        if (this.view.run.shown === "output angle" && which === "one") curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(run.reason ? [["stopped:", run.reason]] : [])] };
+        const hasCommand = which === "one" && { "output angle": "rad", "output speed": "rad/s" }[this.view.run.shown] === this.commandUnit();
+        if (hasCommand) curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
+        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
       }, { slow: true, controls: () => this.runControls() }),
       card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
@@ -191,6 +224,8 @@ class Workbench {
       }),
     ];
   }
+  /** True if a number of a part of the gear is assumed. */
+  assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.sourceOf(path).source.startsWith("assumed")); }
   buildCards() {
     this.cards = this.makeCards();
     by("plots").replaceChildren(...this.cards.map((card) => {
@@ -229,13 +264,14 @@ class Workbench {
     return menu;
   }
   numberControls(group, rows) {
-    return rows.map(([name, label, of]) => {
-      const { factor, text } = of ? this.unit(of) : { factor: 1, text: "" };
+    return rows.map(([name, label, of, unit]) => {
+      const { factor, text } = unit ?? (of ? this.unit(of) : { factor: 1, text: "" });
       const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
       input.onchange = () => {
-        const value = Number(input.value.replace(",", ".")) * factor;
-        if (input.value.trim() !== "" && Number.isFinite(value)) this.setView([group, name], value);
-        else this.say(`${label}: ${input.value} is no number`, true);
+        const value = numberOf(input.value) * factor;
+        const wrong = !Number.isFinite(value) ? "is no number" : POSITIVE.includes(name) && value <= 0 ? "must be above 0" : "";
+        if (wrong) this.say(`${label}: ${input.value} ${wrong}`, true);
+        else this.setView([group, name], value);
       };
       return element("label", {}, `${label} `, input, ` ${text}`);
     });
@@ -243,12 +279,19 @@ class Workbench {
   travelControls() {
     const wanted = this.view.travel.by === "torque" ? ["torque", "±", "torque"] : ["twist", "±", "angle"];
     const made = [this.choice(["travel", "history"], Object.keys(HISTORIES), "history of the twist"), this.choice(["travel", "by"], ["torque", "twist"], "travel given by"), ...this.numberControls("travel", [wanted])];
-    if (this.start.rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / this.start.rated, 3)} % of rated torque`);
+    const { rated } = this.state.origin;
+    if (rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque`);
     return made;
+  }
+  /** Unit of the command: that of the controller, of the law that a sampled one contains, or of the motor in open loop. */
+  commandUnit() {
+    const { control, motor } = this.state.drive, models = Object.values(this.schema.models);
+    const of = ({ model }) => models.find(({ name, command }) => command && name === model)?.command;
+    return of(control.law?.model ? control.law : control) ?? of(motor);
   }
   runControls() {
     const { command } = this.view.run;
-    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", ""], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
+    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", "", this.unitOf(this.commandUnit())], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
       this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
   }
   // ---- Effects -------------------------------------------------------------------------------------------------------
@@ -262,7 +305,7 @@ class Workbench {
   }
   /** Beside each number of the gear: the change of the chosen measure if it grows by 10 %. */
   showEffects() {
-    const measure = this.measures[this.view.effect] ?? this.measures["loop width"], { gear } = this.sets;
+    const measure = this.measures[this.view.effect], { gear } = this.sets;
     let now = NaN;
     try { now = measure(this.sets); } catch { /* said where it is drawn */ }
     gear.paths.forEach((path, i) => {
@@ -282,13 +325,14 @@ class Workbench {
   // ---- Measured data -------------------------------------------------------------------------------------------------
   askMeasured(card) {
     const [across, up] = card.axes();
-    this.ask(`Measured data: ${across.label}, ${up.label}, a line each`, "", (text) => this.takeMeasured(card, text), "Two columns, separated by comma, semicolon, tab or blanks. Empty removes them. A file can be dropped on the plot.");
+    this.ask(`Measured data: ${across.label}, ${up.label}, a line each`, "", (text) => this.takeMeasured(card, text), "Two columns, separated by semicolon, tab, blanks or comma. Empty removes them. A file can be dropped on the plot.");
   }
   takeMeasured(card, text) {
     try {
       if (text.trim() === "") delete this.measured[card.key];
       else {
-        const [across, up] = card.axes(), { x, y } = twoColumns(text, MAX_MEASURED);
+        const [across, up] = card.axes(), { x, y, skipped } = twoColumns(text, MAX_MEASURED);
+        this.say(`${x.length} points read${skipped ? `, ${skipped} ${skipped > 1 ? "rows" : "row"} skipped` : ""}`);
         this.measured[card.key] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
       }
       this.draw();
@@ -327,10 +371,9 @@ class Workbench {
     this.download(`${card.key}.csv`, `${lines.join("\n")}\n`);
   }
   toml() {
-    const original = flattened(this.schema, "Drive", completed(this.schema, "Drive", this.start.drive)), before = new Map(original.paths.map((path, i) => [path, original.numbers[i]]));
-    const now = flattened(this.schema, "Drive", this.state.drive), values = new Map(now.paths.map((path, i) => [path, now.numbers[i]]));
-    const sourceOf = (path) => (before.get(path) === values.get(path) && this.sources[path]) || "set in the workbench";
-    return gearToml(this.schema, this.state.name || "gear", this.state.drive, this.start.parts ?? [], sourceOf);
+    const { name, drive, origin } = this.state;
+    const parts = Object.keys(drive).filter((part) => part !== "gear" && (origin.parts.includes(part) || !origin.drive || !sameValues(drive[part], origin.drive[part])));
+    return gearToml(this.schema, name || "gear", drive, parts, (path) => this.sourceOf(path.split(".")).source);
   }
   python() {
     const { travel, friction, run } = this.view, { drive } = this.state;
@@ -344,41 +387,42 @@ class Workbench {
       `speed = np.linspace(${floatText(friction.maxSpeed / 200)}, ${floatText(friction.maxSpeed)}, 200)  # rad/s`,
       `friction = gear.friction_input.steady(speed, load=${floatText(friction.load)}, temperature=${floatText(friction.temperature)})  # N.m`,
       `angle = np.linspace(0.0, 2.0 * np.pi, ${TURN_POINTS + 1})`, "error = gear.kinematic_error.error(angle)  # rad", "",
-      `drive = ${pythonOf(this.schema, "Drive", drive).replace(/gear=sw\.Gear\((?:\n.*?\n {4}|[^\n]*?)\)(?=,\n|\)|,)/s, "gear=gear")}`,
-      `command = sw.scenario.${run.command}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
+      `drive = ${pythonOf(this.schema, "Drive", drive, "", { gear: "gear" })}`,
+      `command = sw.scenario.${run.command === "sine" ? "sine" : "step"}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
       `run = sw.simulate(drive, command${run.load ? `, load_torque=${floatText(run.load)}` : ""})`, `run[${JSON.stringify(run.shown.replaceAll(" ", "_"))}]`, "",
     ].join("\n");
   }
   async remember() {
-    const { name, drive, view } = this.state;
-    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view }))}`);
+    const { name, drive, view, origin } = this.state;
+    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view, origin: origin.key }))}`);
   }
   async open(fragment) {
     const given = await fromFragment(fragment);
-    this.change({ name: String(given.name ?? "").slice(0, 80), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(given.view) }, true);
+    this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), origin: this.originOfLink(given.origin) }, true);
     this.showAll();
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
-    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change));
-    by("effect").replaceChildren(...Object.keys(this.measures).map((name) => element("option", { value: name }, name)));
+    this.say("");
+    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.sourceOf(path));
+    by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
-    by("name").onchange = () => this.change({ ...this.state, name: by("name").value.replace(/[\r\n]/g, " ") }, true);
+    by("name").onchange = () => this.change({ ...this.state, name: nameFrom(by("name").value) }, true);
     by("catalogue").append(...Object.keys(this.catalogue).map((name) => element("option", { value: name }, name)));
     by("catalogue").onchange = () => {
-      const chosen = this.catalogue[by("catalogue").value];
+      const key = by("catalogue").value, chosen = this.catalogue[key];
       by("catalogue").value = "";
       if (!chosen) return;
-      this.change({ ...this.state, name: chosen.name, drive: completed(this.schema, "Drive", chosen.drive), view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } } }, true);
-      this.start.rated = chosen.rated;
+      const origin = this.origin(key, chosen);
+      this.change({ name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
       this.showAll();
     };
     by("undo").onclick = () => this.travelBack(this.past, this.future);
     by("redo").onclick = () => this.travelBack(this.future, this.past);
-    by("keep").onclick = () => { this.other = { name: this.state.name || "kept", drive: this.state.drive }; this.draw(); };
+    by("keep").onclick = () => { const { name, drive, origin } = this.state; this.other = { name: name || "kept", drive, origin }; this.draw(); };
     by("forget").onclick = () => { this.other = null; this.draw(); };
-    by("swap").onclick = () => { const { drive, name } = this.other; this.other = { name: this.state.name, drive: this.state.drive }; this.change({ ...this.state, drive, name }, true); this.showAll(); };
+    by("swap").onclick = () => { const { name, drive, origin } = this.state, { other } = this; this.other = { name: name || "kept", drive, origin }; this.change({ ...this.state, ...other }, true); this.showAll(); };
     by("link").onclick = async () => {
       await this.remember();
       try { await navigator.clipboard.writeText(location.href); this.say("link copied"); } catch { this.ask("Link", location.href); }
@@ -388,7 +432,7 @@ class Workbench {
     by("text-close").onclick = () => by("text").close();
     by("text-copy").onclick = () => { by("text-content").select(); navigator.clipboard?.writeText(by("text-content").value).catch(() => {}); };
     addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || ["INPUT", "TEXTAREA"].includes(document.activeElement?.tagName)) return;
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || document.activeElement?.matches("input:not([type=range]), textarea")) return;
       event.preventDefault();
       (event.shiftKey ? by("redo") : by("undo")).click();
     });
