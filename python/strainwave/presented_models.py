@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -34,9 +35,16 @@ class Model(Presented):
         return _numbers(self, "", noted=True)
 
     def __repr__(self: Any) -> str:
-        """As one writes it in Python, if that has at most 120 characters; else its laws and the count of its numbers."""
+        """As one writes it in Python, if that has at most 120 characters; else its laws, or the first of its numbers."""
+        from strainwave.files.described import parts
+
         whole = str(_constructors[type(self)](self))
-        return whole if len(whole) <= MAX_REPR and "=<" not in whole else Presented.__repr__(self)
+        if len(whole) <= MAX_REPR and "=<" not in whole:
+            return whole
+        name = type(self).__name__
+        numbers = whole[len(name) + 1 : -1]
+        ends = [end.start() for end in _NEXT_NUMBER.finditer(numbers) if len(f"<{name}: , …>") + end.start() <= MAX_REPR]
+        return Presented.__repr__(self) if parts(self) or not ends else f"<{name}: {numbers[: ends[-1]]}, …>"
 
     def plot(self: Any) -> Figure:
         """Return a figure of a gear, or of that of a drive: twist over torque, and friction over speed.
@@ -51,6 +59,7 @@ class Model(Presented):
         return gear_figure(gear, f"Gear of ratio {gear.kinematics.ratio:g}".replace("-", "−"))
 
 
+_NEXT_NUMBER = re.compile(r", (?=\w+=)")  # in the text of a constructor
 _constructors: dict[type, Any] = {}
 
 

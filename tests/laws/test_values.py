@@ -140,9 +140,11 @@ def test_a_text_with_a_unit_is_the_number_and_is_refused_without(model: type, fi
     text = [f"{each!r} {unit}" for each in value] if field["kind"] == "sequence" else f"{value!r} {unit}"
     assert model(**(usual(model) | {name: text})) == made
     assert refusal(model, field, "1").endswith(
-        f'{name}{"[0]" * (field["kind"] == "sequence")} = "1" has no unit; write it as "1 {unit}"'
+        f'{name}{"[0]" * (field["kind"] == "sequence")} = "1" has no unit; write a number and its unit, as "1.2 {unit}"'
     )
-    assert refusal(model, field, "1 kg.s").endswith(f'cannot convert "kg.s" to "{unit}"; write it as "1.2 {unit}"')
+    assert refusal(model, field, "1 kg.s").endswith(
+        f'cannot convert "kg.s" to "{unit}"; write a number and its unit, as "1.2 {unit}"'
+    )
 
 
 @each(("model", "field"), EVERY_CHOICE)

@@ -33,15 +33,24 @@ def test_a_number_of_any_kind_is_taken_as_a_float(value: Any) -> None:
 def test_a_text_with_a_unit_is_a_number_and_one_without_or_with_another_is_refused() -> None:
     assert arguments.number("dt", "1 ms", "s", low=0.0) == 1e-3
     for text, wrong in (
-        ("1", 'dt = "1" has no unit; write it as "1 s"'),
+        ("1", 'dt = "1" has no unit; write a number and its unit, as "1.2 s"'),
         ("soon", 'dt = "soon" must be a number and its unit, as "1.2 s"'),
-        ("1 N.m", 'dt: cannot convert "N.m" to "s"; write it as "1.2 s"'),
-        ("1 sec.", 'dt = "1 sec.": unit "sec." is not known; write it like N.m, rad/s, deg; write it as "1 s"'),
+        ("1 N.m", 'dt: cannot convert "N.m" to "s"; write a number and its unit, as "1.2 s"'),
+        (
+            "1 sec.",
+            'dt = "1 sec.": unit "sec." is not known; write it like N.m, rad/s, deg; write a number and its unit, as "1.2 s"',
+        ),
         ("-1 ms", "dt = -0.001 s must lie in (0, inf)"),
         ("≤ 1 ms", 'dt = "≤ 1 ms" must be a number and its unit, as "1.2 s"'),
     ):
         with pytest.raises(ValueError, match=exactly(wrong)):
             arguments.number("dt", text, "s", low=0.0)
+    assert arguments.number("dt", ".5 ms", "s") == arguments.number("dt", "+.5 ms", "s") == 5e-4
+    with pytest.raises(ValueError, match=r'^constant = "75 A/mN\.m": .*; write a number and its unit, as "1.2 N\.m/A"$'):
+        arguments.number("constant", "75 A/mN.m", "N.m/A")
+    for speed in ("60 rpm", "6.28 rad/s"):  # a sine of 60 rpm may be meant by its cycles or its angle
+        with pytest.raises(ValueError, match=r'^rate: cannot convert ".*" to "Hz"; write a number and its unit, as "1.2 Hz"$'):
+            arguments.number("rate", speed, "Hz")
     for take in (arguments.number, arguments.bare_number):
         with pytest.raises(TypeError, match=exactly("share must be a number, not '1'")):
             take("share", "1")

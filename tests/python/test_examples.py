@@ -22,14 +22,10 @@ from tests.python.command import strainwave
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
-SLOW_MODULES = (
-    "compensate.py",
-    "smallest_error.py",
-    "inversion.py",
-    "misalignment_sweep.py",
-    "influence.py",
-    "two_encoders.py",
-)  # their examples take 0.5 s and more
+SLOW_MODULES = {
+    SOURCE / "strainwave" / name
+    for name in ("tuning/compensate.py", "diagnose/smallest_error.py", "diagnose/inversion.py", "orders/two_encoders.py")
+}  # their examples take 0.4 s and more
 FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ (?:strainwave|python papers/)))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -63,7 +59,11 @@ def tier(path: Path) -> list[pytest.MarkDecorator]:
     """Returns the mark of the examples of a page or a module: README is the whole path."""
     if path == ROOT / "README.md":
         return [pytest.mark.whole_path("docs")]
-    return [pytest.mark.slow("docs")] if path.suffix == ".md" or path.name in SLOW_MODULES else []
+    return [pytest.mark.slow("docs")] if path.suffix == ".md" or path in SLOW_MODULES else []
+
+
+def test_slow_modules_have_examples() -> None:
+    assert set(MODULES) >= SLOW_MODULES
 
 
 def write_files(page: Path, folder: Path) -> None:

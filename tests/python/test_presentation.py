@@ -317,6 +317,13 @@ def test_a_law_is_one_line_and_a_table(model: type[Any]) -> None:
     assert "<table>" in law._repr_html_() or not law.to_dict()["rows"]
 
 
+def test_a_long_line_is_cut_between_numbers_and_between_columns() -> None:
+    assert re.fullmatch(r"<DC: (\w+=[\d.e-]+, ){3,}…>", repr(sw.motor.DC(resistance=0.5)))
+    run = sw.simulate(sw.load("position-drive"), sw.scenario.step(0.1, duration=0.01))
+    assert len(repr(run)) <= MAX_REPR
+    assert re.search(r"; (\w+ \[\S+\](, | and )){3,}\d+ more>$", repr(run))
+
+
 def test_a_row_without_a_number_is_a_dash_in_print_and_none_in_data() -> None:
     class Unknown(Presented):
         def _rows(self) -> list[Row]:

@@ -116,9 +116,10 @@ class Request:
             top = at_input / abs(self.speed_ratio)
         if self.threshold is None:
             return CREEP_SPEED_SHARE * top, top
-        threshold = at_side * arguments.number("threshold", self.threshold, "rad/s", low=0.0)
+        at_output = arguments.number("threshold", self.threshold, "rad/s", low=0.0)
+        threshold = at_side * at_output
         if threshold >= top:
-            raise ValueError(f"threshold = {self.threshold} rad/s must be below the largest speed, {top / at_side:g} rad/s")
+            raise ValueError(f"threshold = {at_output} rad/s must be below the largest speed, {top / at_side:g} rad/s")
         return threshold, top
 
     def remarks(self, *effects: str) -> Iterator[str]:
@@ -206,6 +207,8 @@ def slot(
     gear_set = gear_set_of(drive)
     if motion is not None and not isinstance(motion, Scenario):
         raise TypeError(f"motion must be a scenario, as sw.scenario.sine gives it, not {shortened(motion)}")
+    if motion is not None:
+        motion.check_unit("motion", "rad")
     arguments.one_of("side", side, ("input", "output"))
     arguments.one_of("unit", unit, ("N.m", "A"))
     if side == "output" and (unit == "A" or name in OF_THE_INPUT):

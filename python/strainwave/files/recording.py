@@ -21,7 +21,7 @@ from strainwave.files.labels import Label, label_of
 from strainwave.files.units import check as check_unit, convert
 from strainwave.files.writing import replacing
 from strainwave.messages import listed, one_line, quoted, shortened
-from strainwave.presentation import PLAIN_DIGITS, Pictured, Row
+from strainwave.presentation import MAX_REPR, PLAIN_DIGITS, Pictured, Row
 
 if TYPE_CHECKING:
     import pandas
@@ -142,11 +142,16 @@ class Recording(Pictured):
 
     def _headline(self) -> str:
         span = f" from {self.time[0]:g} s to {self.time[-1]:g} s" if "time" in self else ""
-        more = len(self.names) - LISTED_COLUMNS
-        series = ", ".join(f"{name} [{self.units[name]}]" for name in self.names[:LISTED_COLUMNS])
-        series += f" and {more} more" if more > 0 else ""
         title = f'"{self.title}": ' if self._heading else ""
-        return f"{title}{len(self)} samples{span}; {series}"
+        lines = [f"{title}{len(self)} samples{span}; {self._series(shown)}" for shown in range(LISTED_COLUMNS, 0, -1)]
+        room = MAX_REPR - len(f"<{type(self).__name__}: >")
+        return next((line for line in lines if len(line) <= room), lines[-1])
+
+    def _series(self, shown: int) -> str:
+        """Return the first columns with their units, and the count of the others."""
+        series = ", ".join(f"{name} [{self.units[name]}]" for name in self.names[:shown])
+        more = len(self.names) - shown
+        return f"{series} and {more} more" if more > 0 else series
 
     def _picture(self) -> Figure | None:
         """Return the figure of the first columns that change."""

@@ -208,8 +208,18 @@ def base_exponents(unit: str) -> tuple[float, dict[str, int]]:
     Raises:
         ValueError: the unit is not known
     """
-    parsed = _parse(unit)
-    return float(parsed.size), dict(sorted(parsed.dimension.items()))
+    size, plain = _size(unit)
+    parsed = _parse(plain)
+    return size * float(parsed.size), dict(sorted(parsed.dimension.items()))
+
+
+def plain_unit(unit: str) -> str:
+    """Return the unit that counts or shares of a rated value are converted to, and any other unit itself.
+
+    >>> plain_unit("counts/4096/s"), plain_unit("% of 12 A"), plain_unit("deg")
+    ('rev/s', 'A', 'deg')
+    """
+    return _size(unit)[1]
 
 
 def counts(unit: str) -> bool:

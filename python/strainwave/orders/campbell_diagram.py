@@ -126,7 +126,8 @@ def campbell(recording: Recording, column: str, *, speed: str = "input_speed", s
         raise ValueError("the recording has no time: a Campbell diagram needs it")
     values, interval = record.columns[column], record.step
     turning = np.abs(convert(record.columns[speed], recording.unit(speed), "rad/s"))
-    samples = round(arguments.seconds("stretch", stretch) / interval)
+    stretch = arguments.seconds("stretch", stretch)
+    samples = round(stretch / interval)
     if samples < MIN_SAMPLES:
         raise ValueError(
             f"stretch = {stretch:g} s has {samples} samples of {interval:g} s; take {MIN_SAMPLES * interval:g} s or more"

@@ -110,6 +110,7 @@ def stroke_table(first: Drive, second: Drive, stroke: float, tolerance: float) -
     the output differs by less than 0.1 mrad rms up to a stroke of 3.48 rad of the motor, 2 deg of the output
     """
     ratio = abs(float(second.gear.kinematics.ratio))
+    tolerance = arguments.number("tolerance", tolerance, "mrad", low=0.0)
     largest = ratio * np.radians(arguments.number("stroke", stroke, "deg", low=0.0))
     apart = strokes_apart(first, second, np.geomspace(MIN_STROKE_SHARE * largest, largest, STROKE_COUNT).tolist())
     rows: list[Row] = [("stroke [rad]", "output angle, rms [mrad]", *(["current, rms [A]"] if "current" in apart else []))]
@@ -118,7 +119,7 @@ def stroke_table(first: Drive, second: Drive, stroke: float, tolerance: float) -
         for row in zip(*(apart[name] for name in apart.names), strict=True)
     ]
     allowed = f"the output differs by less than {tolerance:g} mrad rms"
-    if (reach := stroke_within(apart, 1e-3 * arguments.number("tolerance", tolerance, "mrad", low=0.0))) == inf:
+    if (reach := stroke_within(apart, 1e-3 * tolerance)) == inf:
         verdict = f"{allowed} at every stroke up to {largest:.3g} rad of the motor"
     elif reach <= float(apart["stroke"][0]):
         verdict = f"the output differs by {tolerance:g} mrad rms or more at every stroke"

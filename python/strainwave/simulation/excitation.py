@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, _core, arguments
 from strainwave.messages import quoted, shortened
 from strainwave.simulation.scenario import Scenario
-from strainwave.simulation.signals import load_input
+from strainwave.simulation.signals import command_unit, load_input
 from strainwave.simulation.time_grid import (
     BYTES_PER_INPUTS,
     BYTES_PER_STEP,
@@ -58,6 +58,7 @@ class Excitation:
             raise TypeError(f"command = {shortened(command)} must be a Scenario, as sw.scenario.constant(...) makes one")
         if inputs is not None:
             arguments.mapping("inputs", inputs, '{"output_angle": 0.1}')
+        command.check_unit("command", command_unit(drive))
         load = load_input(drive)
         if load != "load_torque" and (isinstance(load_torque, Scenario) or load_torque != 0.0):
             raise ValueError(f"the load of this drive takes no load_torque, but {load}: give inputs={{{quoted(load)}: ...}}")
@@ -68,10 +69,11 @@ class Excitation:
         for name, signal in given.items():
             if not isinstance(signal, Scenario | Real | str):
                 raise TypeError(f"{name} = {shortened(signal)} must be a number or a Scenario")
+            unit = "K" if name == "temperature" else _core.load_input(drive)[1]
             if not isinstance(signal, Scenario):
-                unit = "K" if name == "temperature" else _core.load_input(drive)[1]
                 signals[name] = arguments.number(name, signal, unit)
                 continue
+            signal.check_unit(name, unit)
             signals[name] = signal
             if signal.duration != command.duration:
                 raise ValueError(f"{name} lasts {signal.duration} s, command {command.duration} s; both must last equally long")

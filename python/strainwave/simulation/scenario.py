@@ -6,8 +6,9 @@ Every command signal has one form, a line in pieces, which may jump, and waves:
           \quad t_k \le t < t_{k+1}
 
 Sums and multiples keep this form, and rates of change are exact. The unit of a command is that of whatever is
-commanded, rad for a position-controlled drive, V for an open-loop motor; a scenario carries none. A text with a unit, as
-``sine("5 deg", "2 Hz", duration="500 ms")``, is converted to SI units.
+commanded, rad for a position-controlled drive, V for an open-loop motor. A text with a unit, as
+``sine("5 deg", "2 Hz", duration="500 ms")``, is converted to SI units; a run refuses it if the drive is commanded in another
+unit. A scenario of plain numbers has no unit.
 
 >>> command = ramp(rate=0.3, duration=5.0) + 0.5 * sine(amplitude=0.2, frequency=2.0, duration=5.0)
 >>> float(command.value(1.125))
@@ -27,6 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import _core, arguments, typeset
 from strainwave.files.recording import Recording
+from strainwave.files.units import base_exponents, check
 from strainwave.messages import shortened
 from strainwave.presentation import PLAIN_DIGITS, Pictured, Row, counted
 from strainwave.simulation.time_grid import check_instants, room_for
@@ -86,10 +88,11 @@ class Scenario(Pictured):
         level: value of the line there [unit of the command], shape (n,)
         slope: rate of the line from there on [unit of the command per s], shape (n,)
         waves: what is added to the line
+        unit: a unit of what is commanded, if it was given as a text; the numbers are in SI units. "" if not known
 
     Raises:
-        ValueError: the duration is shorter than 1e-30 s, a number is not finite, the pieces are out of order, or the command or
-            its rate grows beyond all numbers within the duration.
+        ValueError: the duration is shorter than 1e-30 s, the unit is not known, a number is not finite, the pieces are out of
+            order, or the command or its rate grows beyond all numbers within the duration.
 
     >>> import strainwave as sw
     >>> command = sw.scenario.ramp(2.0, duration=1.0) + sw.scenario.sine(0.1, frequency=5.0, duration=1.0)
@@ -102,6 +105,7 @@ class Scenario(Pictured):
     level: Array
     slope: Array
     waves: tuple[Wave, ...] = ()
+    unit: str = ""
 
     __array_ufunc__ = None  # numpy scalars leave `factor * scenario` to __rmul__
 
@@ -122,6 +126,8 @@ class Scenario(Pictured):
         for wave in self.waves:
             for name, value in vars(wave).items():
                 arguments.number(f"wave.{name}", value)
+        if arguments.text("scenario.unit", self.unit):
+            check(self.unit)
         if not np.isfinite(self._largest()):
             raise ValueError(
                 f"scenario: the command, its rate or the angle of a wave grows beyond {np.finfo(float).max:.2g} within "
@@ -178,6 +184,22 @@ class Scenario(Pictured):
         breaks.setflags(write=False)
         return breaks
 
+    def check_unit(self, name: str, unit: str) -> None:
+        """Refuse a unit that does not measure what the scenario does; one of plain numbers passes.
+
+        Raises:
+            ValueError: the units measure different things
+
+        >>> step("5 N.m", duration=1.0).check_unit("command", "rad")
+        Traceback (most recent call last):
+        ValueError: command: the scenario is in N.m, and rad is expected; give its numbers in rad
+        """
+        if not self.unit or _dimension(self.unit) == _dimension(unit):
+            return
+        per_second = _dimension(self.unit) == _dimension(f"({unit}).s")
+        advice = f"the rate of a ramp in {check(f'({unit})/s')}" if per_second else f"its numbers in {unit}"
+        raise ValueError(f"{name}: the scenario is in {self.unit}, and {unit} is expected; give {advice}")
+
     def recording(self, dt: float, unit: str) -> Recording:
         """The command at 0, dt, 2 dt, … up to the duration, as columns `time` and `command`.
 
@@ -186,12 +208,14 @@ class Scenario(Pictured):
             unit: unit of the command
 
         Raises:
-            ValueError: `dt` is out of its range, or would make more than 1e8 samples; the unit is not known
+            ValueError: `dt` is out of its range, or would make more than 1e8 samples; the unit is not known, or measures
+                something else than the scenario
             MemoryError: the samples are too many; the message gives their size
 
         >>> ramp(rate=2.0, duration=1.0).recording(dt=0.25, unit="rad")["command"]
         array([0. , 0.5, 1. , 1.5, 2. ])
         """
+        self.check_unit("recording.unit", unit)
         dt = arguments.number("recording.dt", dt, "s", "(]", 0.0, self.duration)
         check_instants(self.duration, dt, "take longer ones")
         intervals = int(self.duration / dt * (1.0 + 4.0 * np.finfo(float).eps))  # 0.3 / 0.1 falls just short of 3
@@ -200,7 +224,7 @@ class Scenario(Pictured):
             return Recording({"time": time, "command": self.value(time)}, {"time": "s", "command": unit})
 
     def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
-        return Scenario, (self.duration, self.start, self.level, self.slope, self.waves)
+        return Scenario, (self.duration, self.start, self.level, self.slope, self.waves, self.unit)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
@@ -215,10 +239,11 @@ class Scenario(Pictured):
             return NotImplemented
         if self.duration != other.duration:
             raise ValueError(f"durations differ, {self.duration} s and {other.duration} s; a sum needs one duration")
+        unit = _common("a sum", self.unit, other.unit)
         start = np.append(0.0, np.union1d(self.breaks, other.breaks))
         with np.errstate(over="ignore"):  # what is not finite is refused by the sum
             level, slope = self._line.at(start, before=False) + other._line.at(start, before=False)
-        return Scenario(self.duration, start, level, slope, self.waves + other.waves)
+        return Scenario(self.duration, start, level, slope, self.waves + other.waves, unit)
 
     def __mul__(self, factor: float) -> Scenario:
         """The command times a number."""
@@ -308,9 +333,9 @@ def constant(value: float | str, duration: float | str) -> Scenario:
     >>> constant(1.5, duration=2.0).value([0.0, 2.0])
     array([1.5, 1.5])
     """
-    value = _command("constant.value", value)
+    value, unit = _command("constant.value", value)
     duration = _duration("constant.duration", duration)
-    return _from(0.0, duration, level=value, slope=0.0)
+    return _from(0.0, duration, level=value, slope=0.0, unit=unit)
 
 
 def step(amplitude: float | str, duration: float | str, start: float | str = 0.0) -> Scenario:
@@ -327,10 +352,10 @@ def step(amplitude: float | str, duration: float | str, start: float | str = 0.0
     >>> step(2.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 2., 2.])
     """
-    amplitude = _command("step.amplitude", amplitude)
+    amplitude, unit = _difference("step.amplitude", amplitude)
     duration = _duration("step.duration", duration)
     start = arguments.number("step.start", start, "s", "[)", 0.0, duration)
-    return _from(start, duration, level=amplitude, slope=0.0)
+    return _from(start, duration, level=amplitude, slope=0.0, unit=unit)
 
 
 def ramp(rate: float | str, duration: float | str, start: float | str = 0.0) -> Scenario:
@@ -347,10 +372,10 @@ def ramp(rate: float | str, duration: float | str, start: float | str = 0.0) -> 
     >>> ramp(4.0, duration=1.0, start=0.5).value([0.0, 0.5, 1.0])
     array([0., 0., 2.])
     """
-    rate = _command("ramp.rate", rate)
+    rate, unit = _difference("ramp.rate", rate)
     duration = _duration("ramp.duration", duration)
     start = arguments.number("ramp.start", start, "s", "[)", 0.0, duration)
-    return _from(start, duration, level=0.0, slope=rate)
+    return _from(start, duration, level=0.0, slope=rate, unit=unit and check(f"({unit}).s"))
 
 
 def sine(
@@ -371,13 +396,14 @@ def sine(
     >>> sine(2.0, frequency=0.25, duration=4.0, offset=1.0).value([0.0, 1.0, 3.0])
     array([ 1.,  3., -1.])
     """
-    amplitude = _command("sine.amplitude", amplitude)
+    amplitude, unit = _difference("sine.amplitude", amplitude)
     frequency = arguments.number("sine.frequency", frequency, "Hz", "[)", 0.0)
     duration = _duration("sine.duration", duration)
     phase = arguments.number("sine.phase", phase, "rad")
-    offset = _command("sine.offset", offset)
+    offset, unit_of_offset = _command("sine.offset", offset)
+    unit = _common("sine.amplitude and sine.offset", unit, unit_of_offset)
     wave = Wave(amplitude, frequency, sweep=0.0, phase=phase)
-    return replace(constant(offset, duration), waves=(wave,))
+    return replace(constant(offset, duration), waves=(wave,), unit=unit)
 
 
 def chirp(amplitude: float | str, start_frequency: float | str, stop_frequency: float | str, duration: float | str) -> Scenario:
@@ -398,12 +424,12 @@ def chirp(amplitude: float | str, start_frequency: float | str, stop_frequency: 
     >>> float(chirp(1.0, start_frequency=0.0, stop_frequency=1.0, duration=8.0).value(1.0).round(12))  # sin(pi / 8)
     0.382683432365
     """
-    amplitude = _command("chirp.amplitude", amplitude)
+    amplitude, unit = _difference("chirp.amplitude", amplitude)
     start_frequency = arguments.number("chirp.start_frequency", start_frequency, "Hz", "[)", 0.0)
     stop_frequency = arguments.number("chirp.stop_frequency", stop_frequency, "Hz", "[)", 0.0)
     duration = _duration("chirp.duration", duration)
     wave = Wave(amplitude, start_frequency, sweep=(stop_frequency - start_frequency) / duration, phase=0.0)
-    return replace(constant(0.0, duration), waves=(wave,))
+    return replace(constant(0.0, duration), waves=(wave,), unit=unit)
 
 
 def pulse_train(
@@ -424,7 +450,7 @@ def pulse_train(
     >>> pulse_train(3.0, period=1.0, width=0.25, duration=2.0, start=0.5).breaks
     array([0.5 , 0.75, 1.5 , 1.75])
     """
-    amplitude = _command("pulse_train.amplitude", amplitude)
+    amplitude, unit = _difference("pulse_train.amplitude", amplitude)
     period = arguments.number("pulse_train.period", period, "s", low=0.0)
     width = arguments.number("pulse_train.width", width, "s", low=0.0, high=period)
     duration = _duration("pulse_train.duration", duration)
@@ -438,7 +464,7 @@ def pulse_train(
         if start > 0.0:
             edges, levels = np.append(0.0, edges), np.append(0.0, levels)
         inside = edges < duration
-        return Scenario(duration, edges[inside], levels[inside], np.zeros(np.count_nonzero(inside)))
+        return Scenario(duration, edges[inside], levels[inside], np.zeros(np.count_nonzero(inside)), unit=unit)
 
 
 def table(time: ArrayLike, value: ArrayLike) -> Scenario:
@@ -467,21 +493,44 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
     return Scenario(float(points.time[-1]), points.time[:-1], points["value"][:-1], slope)
 
 
-def _command(name: str, value: object) -> float:
-    from strainwave.files.entries import number_of
+def _command(name: str, value: object) -> tuple[float, str]:
+    """Return a number of a command in SI units, and the unit of its text; "" if it is no text."""
+    from strainwave.files.entries import written_figure
 
-    return arguments.number(name, number_of(name, value, "") if isinstance(value, str) else value)
+    if not isinstance(value, str):
+        return arguments.number(name, value), ""
+    number, unit = written_figure(name, value)
+    return arguments.number(name, number), unit
+
+
+def _difference(name: str, value: object) -> tuple[float, str]:
+    """As `_command`, for a difference: degC is refused, as its zero does not count."""
+    number, unit = _command(name, value)
+    if unit == "degC":
+        raise ValueError(f"{name} = {shortened(value)} is a difference of temperatures: write 5 degC as 5 K")
+    return number, unit
+
+
+def _dimension(unit: str) -> dict[str, int]:
+    return base_exponents(unit)[1]
+
+
+def _common(name: str, unit: str, other: str) -> str:
+    """Return the unit of both; refuse units that measure different things."""
+    if unit and other and _dimension(unit) != _dimension(other):
+        raise ValueError(f"{name}: the units differ, {unit} and {other}; both must measure the same")
+    return unit or other
 
 
 def _duration(name: str, value: object) -> float:
     return arguments.number(name, value, "s", "[)", low=MIN_DURATION)
 
 
-def _from(start: float, duration: float, level: float, slope: float) -> Scenario:
+def _from(start: float, duration: float, level: float, slope: float, unit: str) -> Scenario:
     """Return a scenario that is zero until `start`, then one piece of a line."""
     before = [0.0] if start > 0.0 else []
     starts, levels, slopes = (np.array([*before, last]) for last in (start, level, slope))
-    return Scenario(duration, starts, levels, slopes)
+    return Scenario(duration, starts, levels, slopes, unit=unit)
 
 
 def __dir__() -> list[str]:

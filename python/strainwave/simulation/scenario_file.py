@@ -236,6 +236,9 @@ class ScenarioFile(Presented):
             raise ValueError(one_line(f"{path}: a scenario is written to a file that ends in .toml"))
         for name in self.inputs:
             _check_known(name, [each for each in units if each != "command"])
+        for name, signal in {"command": self.command, **self.inputs}.items():
+            if isinstance(signal, Scenario):
+                signal.check_unit(name, units[name])
         content = tomlkit.dumps(_written(self, units))
         with replacing(path) as file:
             file.write(content.encode())

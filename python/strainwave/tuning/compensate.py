@@ -309,12 +309,13 @@ def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
 
 def goal_of(name: str, plant: Plant, travel: float, speed: float | None, pace: float = 1.0) -> Goal:
     """Return a goal by its name, at `pace` times its speed."""
+    travel = arguments.number("travel", travel, "rad", low=0.0)
     usual = USUAL_SPEED / abs(plant.ratio) * (CREEP_SPEED_SHARE if name == "smooth" else 1.0)
     usual = np.pi * TORQUE_FREQUENCY * travel if name == "torque" else usual
     commanded = pace * (usual if speed is None else arguments.number("speed", speed, "rad/s", low=0.0))
     unit = plant.effort_unit
     if name == "position":
-        return goals.position(arguments.number("travel", travel, "rad", low=0.0), commanded, unit, plant.period)
+        return goals.position(travel, commanded, unit, plant.period)
     if name == "torque":
         load: Any = plant.drive.load
         return goals.torque(load.stiffness * travel, load.stiffness, commanded, unit, plant.period)

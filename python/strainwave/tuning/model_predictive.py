@@ -329,6 +329,8 @@ def mpc(
         raise TypeError(
             f"preview must be a scenario of the command, as sw.scenario.table(…) makes one, not {shortened(preview)}"
         )
+    if preview is not None:
+        preview.check_unit("preview", "rad")
     if torque_limit is not None:
         torque_limit = arguments.number("torque_limit", torque_limit, "N.m", low=0.0)
     linear = LinearPlant.of(plant, torque_limit).measured_by_encoders()

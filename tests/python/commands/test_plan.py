@@ -41,7 +41,10 @@ def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
         ((*FRICTION, "--noise", "voltag=1"), "noise: voltag is none of"),
         ((*FRICTION, "--resolution", "angle"), "--resolution angle: write it as --resolution angle=1e-5"),
         ((*FRICTION, "--resolution", "turn=1"), "resolution: turn is none of torque, angle, input_torque, input_angle"),
-        ((*FRICTION, "--speed-limit", "2000"), '--speed-limit = "2000" has no unit; write it as "2000 rad/s"'),
+        (
+            (*FRICTION, "--speed-limit", "2000"),
+            '--speed-limit = "2000" has no unit; write a number and its unit, as "1.2 rad/s"',
+        ),
         ((*FRICTION, "--speed-limit", "2000 N.m"), '--speed-limit: cannot convert "N.m" to "rad/s"'),
         ((*FRICTION, "--minutes", "-1"), "--minutes = -1.0 must lie in (0, inf)"),
         (

@@ -249,9 +249,11 @@ def test_what_is_assumed_is_remarked() -> None:
         ("robot-joint", "speed-table", {"points": 7}, "must be even"),
         ("robot-joint", "speed-table", {"points": 2}, "points"),
         ("robot-joint", "speed-table", {"speed": 0.5, "threshold": 0.6}, "below the largest speed, 0.5 rad/s"),
+        ("robot-joint", "speed-table", {"speed": 0.01, "threshold": "0.3 rpm"}, r"threshold = 0\.0314\d* rad/s must be below"),
         ("robot-joint", "viscous-coulomb-scale", {"members": 18}, "members"),
         ("robot-joint", "speed-table", {"side": "motor"}, "side"),
         ("robot-joint", "speed-table", {"temperature": 0.0}, "temperature"),
+        ("robot-joint", "torque-offset", {"motion": sw.scenario.step("1 A", 1.0)}, "^motion: the scenario is in A, and rad"),
     ],
 )
 def test_what_is_missing_is_stated(drive: str, name: str, changes: dict[str, object], words: str) -> None:

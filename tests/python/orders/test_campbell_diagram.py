@@ -69,6 +69,10 @@ def test_what_makes_no_diagram_is_refused() -> None:
             "stretch = 0.01 s has 10 samples of 0.001 s; take 0.016 s or more",
         ),
         (
+            lambda: sw.orders.campbell(run, "torque", stretch="10 ms"),  # type: ignore[arg-type]
+            "stretch = 0.01 s has 10 samples of 0.001 s; take 0.016 s or more",
+        ),
+        (
             lambda: sw.orders.campbell(run, "torque", stretch=30.0),
             "has 2 stretches of 30 s, of 4 to 100000 allowed; take a shorter",
         ),

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from strainwave import Recording
 from strainwave.analysis import Agreement, Difference
 from strainwave.files import Entry, Quantity
-from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table
+from strainwave.report.listing import agreement_table, aligned, difference_table, listing, range_table, stroke_table
 
 from tests.support.samples import sample
 from tests.support.strategies import drives
@@ -187,3 +187,8 @@ def test_rounding_beside_a_large_value_is_none() -> None:
 @pytest.mark.parametrize(("correlation", "shown"), [(1.0, "1"), (-1.0, "-1"), (0.0, "0"), (0.5, "0.5"), (0.9999999, "1")])
 def test_a_correlation_has_no_empty_digits(correlation: float, shown: str) -> None:
     assert agreement_table([Agreement("a", "1", 0.1, 0.1, 0.0, correlation, 2)]).endswith(f"  {shown}")
+
+
+def test_a_tolerance_may_have_a_unit() -> None:
+    drives = sw.load("position-drive-full-friction"), sw.load("position-drive")
+    assert stroke_table(*drives, 100.0, "100 urad") == stroke_table(*drives, 100.0, 0.1)  # type: ignore[arg-type]

@@ -9,11 +9,13 @@ import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import scipy.signal
+import strainwave as sw
 from hypothesis import assume, given, strategies as st
 from numpy.typing import ArrayLike, NDArray
 from strainwave.simulation.scenario import (
@@ -337,19 +339,83 @@ def test_what_is_no_signal_is_refused(make: Callable[[], object], message: str) 
         make()
 
 
+def test_a_unit_is_kept_by_sums_and_multiples_and_compared_where_it_is_known() -> None:
+    swing = sine("5 deg", 1.0, 1.0)
+    for signal in (
+        swing + step(1.0, 1.0),
+        step(1.0, 1.0) - swing,
+        2.0 * swing,
+        ramp("3 rpm", 1.0),
+        pickle.loads(pickle.dumps(swing)),
+    ):
+        signal.check_unit("command", "rad")
+        with pytest.raises(
+            ValueError, match=r"^command: the scenario is in (deg|rpm\.s), and N\.m is expected; give its numbers in N\.m$"
+        ):
+            signal.check_unit("command", "N.m")
+    step(1.0, 1.0).check_unit("command", "N.m")
+    step("50 % of 12 A", 1.0).check_unit("command", "A")
+    with pytest.raises(ValueError, match=exactly("a sum: the units differ, deg and N.m; both must measure the same")):
+        swing + constant("5 N.m", 1.0)
+    with pytest.raises(
+        ValueError, match=exactly("sine.amplitude and sine.offset: the units differ, deg and s; both must measure the same")
+    ):
+        sine("5 deg", 1.0, 1.0, offset="3 s")
+    with pytest.raises(ValueError, match=r"is in deg, and N\.m is expected"):
+        swing.recording(0.5, "N.m")
+    with pytest.raises(ValueError, match='"furlong" is not known'):
+        replace(swing, unit="furlong")
+
+
+@pytest.mark.parametrize(
+    ("command", "load", "wrong"),
+    [
+        (step("5 N.m", 0.01), 0.0, "command: the scenario is in N.m, and rad is expected; give its numbers in rad"),
+        (step("3 s", 0.01), 0.0, "command: the scenario is in s, and rad is expected; give its numbers in rad"),
+        (ramp("30 deg", 0.01), 0.0, "command: the scenario is in deg.s, and rad is expected; give the rate of a ramp in rad/s"),
+        (
+            step("5 deg", 0.01),
+            constant("5 A", 0.01),
+            "load_torque: the scenario is in A, and N.m is expected; give its numbers in N.m",
+        ),
+    ],
+)
+def test_a_run_refuses_a_signal_in_another_unit(command: Scenario, load: Any, wrong: str) -> None:
+    with pytest.raises(ValueError, match=exactly(wrong)):
+        sw.simulate(sw.load("position-drive"), command, load_torque=load)
+
+
+def test_a_scenario_in_another_unit_is_not_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"the scenario is in N\.m, and rad is expected"):
+        sw.simulation.ScenarioFile(step("5 N.m", 0.01)).save(tmp_path / "step.toml", sw.load("position-drive"))
+
+
+@pytest.mark.parametrize(
+    "make", [lambda a: sine(a, 1.0, 1.0), lambda a: step(a, 1.0), lambda a: ramp(a, 1.0), lambda a: chirp(a, 1.0, 2.0, 1.0)]
+)
+def test_a_difference_of_temperatures_is_in_kelvin(make: Callable[[str], Scenario]) -> None:
+    with pytest.raises(ValueError, match="= '5 degC' is a difference of temperatures: write 5 degC as 5 K"):
+        make("5 degC")
+    warm = sine("5 K", 1.0, 1.0, offset="20 degC")
+    assert (warm.waves[0].amplitude, warm.level[0]) == (5.0, 293.15)
+
+
 def test_texts_with_units_are_the_numbers_in_si_units() -> None:
     assert sine("90 deg", "2000 mHz", duration="500 ms", phase="180 deg") == sine(np.pi / 2.0, 2.0, 0.5, phase=np.pi)
     assert constant("20 degC", 1.0) == constant(293.15, 1.0)
     for amplitude, wrong in (
-        ("5", 'sine.amplitude = "5" has no unit; write it as "5 deg"'),
+        ("5", 'sine.amplitude = "5" has no unit; write a number and its unit, as "1.2 deg"'),
         (
             "5 furlong",
-            'sine.amplitude = "5 furlong": unit "furlong" is not known; write it like N.m, rad/s, deg; write it as "5 deg"',
+            'sine.amplitude = "5 furlong": unit "furlong" is not known; write it like N.m, rad/s, deg; '
+            'write a number and its unit, as "1.2 deg"',
         ),
     ):
         with pytest.raises(ValueError, match=exactly(wrong)):
             sine(amplitude, 1.0, 1.0)
-    with pytest.raises(ValueError, match=exactly('sine.frequency: cannot convert "s" to "Hz"; write it as "1.2 Hz"')):
+    with pytest.raises(
+        ValueError, match=exactly('sine.frequency: cannot convert "s" to "Hz"; write a number and its unit, as "1.2 Hz"')
+    ):
         sine(1.0, "3 s", 1.0)
 
 

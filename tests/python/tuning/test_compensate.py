@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -228,3 +229,11 @@ def test_a_loop_without_margin_is_remarked() -> None:
     best = Judged(baseline(plant, setting), {"tracking error": np.zeros(3)}, {"tracking error": 0.0})
     remarks = list(_remarks(gear_set, plant, position(0.2, 0.2, "N.m"), best))
     assert any(" and 0.5 is wanted: the gear has little damping" in remark for remark in remarks)
+
+
+@pytest.mark.parametrize("name", ["position", "torque"])
+def test_a_travel_may_have_a_unit(name: str) -> None:
+    plant = Plant.read(STATED, 1e-3, 0.0)
+    plant = replace(plant, drive=plant.drive.replace(load=sw.loads.TorsionSpring(inertia=0.5, stiffness=1e3)))
+    by_text, by_number = (goal_of(name, plant, travel, None) for travel in ("2 deg", np.radians(2.0)))
+    assert by_text.command == by_number.command

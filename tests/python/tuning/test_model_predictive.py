@@ -207,6 +207,8 @@ def test_what_it_refuses(changes: dict[str, float], words: str) -> None:
 def test_what_is_known_beforehand_is_a_scenario() -> None:
     with pytest.raises(TypeError, match=r"preview must be a scenario.*not 3\.0"):
         sw.tuning.mpc(joint(), preview=3.0)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"^preview: the scenario is in N\.m, and rad is expected"):
+        sw.tuning.mpc(joint(), preview=sw.scenario.step("1 N.m", 1.0))
 
 
 def test_a_run_with_another_period_than_that_of_the_design_is_refused() -> None:

@@ -344,7 +344,7 @@ def _prior(key: str, given: object, parameter: Parameter) -> tuple[float, float]
     if not (isinstance(given, tuple | list) and len(given) == 2):
         raise TypeError(f"{name} must be (value, sigma), or an Entry with spread or uncertainty, not {shortened(given)}")
     value = arguments.number(f"the value of {name}", given[0], parameter.unit)
-    sigma = arguments.number(f"the sigma of {name}", given[1], parameter.unit, low=0.0)
+    sigma = arguments.bare_number(f"the sigma of {name}", given[1], parameter.unit, low=0.0)
     return value, sigma
 
 

@@ -227,7 +227,7 @@ def test_columns_that_are_no_experiment_are_refused() -> None:
         ({"recordings": "log.csv"}, TypeError, r"^recordings must be Recordings, or experiments made of them, not 'log.csv'$"),
         ({"free": "gear.damping"}, TypeError, r"^free must be a list of names, not 'gear.damping'$"),
         ({"channels": "torque"}, TypeError, r"^channels must be a list of names, not 'torque'$"),
-        ({"dt": "1 N"}, ValueError, r'^dt: cannot convert "N" to "s"; write it as "1.2 s"$'),
+        ({"dt": "1 N"}, ValueError, r'^dt: cannot convert "N" to "s"; write a number and its unit, as "1.2 s"$'),
         ({"training": [0, 1, 2]}, TypeError, r"^training must have True or False for each sample, not int64$"),
         ({"loss": "cauchy"}, ValueError, r'^loss = "cauchy" must be one of linear, soft_l1$'),
         (

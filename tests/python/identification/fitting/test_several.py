@@ -280,6 +280,7 @@ def test_each_record_has_its_own_samples_held_out() -> None:
             ValueError,
             r'^the sigma of priors\["friction_input.coulomb"\] = 0.0 N.m must lie ',
         ),
+        ({"priors": {COULOMB: (0.03, "1 N.m")}}, TypeError, r"^the sigma of priors.* must be a number, not '1 N.m'$"),
         ({"priors": {COULOMB: 0.03}}, TypeError, r'^priors\["friction_input.coulomb"\] must be \(value, sigma\), or an Entry '),
         (
             {"priors": {COULOMB: Entry("guess")}},
