@@ -91,7 +91,8 @@ def shortened(value: object) -> str:
     '[0, 1, 2, 3, 4, 5, ...]'
     """
     try:
-        return one_line(reprlib.repr(value))
+        written = one_line(reprlib.repr(value))
+        return f"<{type(value).__name__}>" if written.endswith("…>") else written  # the line of a result, cut twice
     except ValueError:  # Python writes no whole number of more than some thousand digits
         return f"<{type(value).__name__} with too many digits>"
 

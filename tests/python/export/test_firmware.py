@@ -322,7 +322,7 @@ def test_the_state_has_the_names_and_numbers_of_the_simulated_controller(doubled
     ("changed", "error", "message"),
     [
         ({"drive": drive().replace(control=LAW)}, TypeError, "drive.control = <PositionSpeed"),
-        ({"drive": LAW}, TypeError, "drive = <PositionSpeed"),
+        ({"drive": LAW}, TypeError, "drive = <PositionSpeed> must be a drive"),
         ({"name": "2nd"}, ValueError, 'name = "2nd" must be a name in C'),
         ({"name": "float"}, ValueError, 'name = "float" must be a name in C'),
         ({"scalar": "half"}, ValueError, 'scalar = "half" must be one of double, float'),
