@@ -21,7 +21,7 @@ namespace {
 constexpr int max_whole = 4096, max_numbers = 65536, max_points = 32768, max_rows = 16, max_parameters = 256;
 constexpr std::size_t max_slopes = 1 << 20;
 
-// What the page writes, and then what it reads.
+// Inputs that the page writes, then outputs that it reads.
 int laws[max_whole], shape[max_whole], parameters[max_parameters], recorded[max_rows];
 double numbers[max_numbers], points[4 * max_points], instants[max_points + 1], inputs[3 * kernel::input_count * max_points];
 std::uint8_t keep[max_points];

@@ -50,7 +50,7 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
 
 
 def bare_number(name: str, value: object, unit: str = "", brackets: str = "()", low: float = -inf, high: float = inf) -> float:
-    """As `number`, but a text is refused: for a value that is stored as it is given."""
+    """Return a number as `number` does; refuse a text, because the value is stored unchanged."""
     if isinstance(value, str):
         raise TypeError(f"{name} must be a number, not {shortened(value)}")
     return number(name, value, unit, brackets, low, high)

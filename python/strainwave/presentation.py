@@ -31,7 +31,7 @@ MAX_PRINTED_ROWS = 500  # of a table; data and frames have all
 MAX_LISTED_NUMBERS = 4  # of an array; of a longer one both ends of its range are stated
 PLAIN_DIGITS = 5  # of a number without a standard deviation
 COUNT_DIGITS = 9  # of a whole number without a unit, as the counts of an encoder
-FIELDS_BESIDE_ROWS = ("remarks", "unit", "units")  # fields that stand beside the rows, or within them
+FIELDS_BESIDE_ROWS = ("remarks", "unit", "units")  # shown next to the rows, or within them
 _ATTRIBUTE = re.compile(r"^ {8}(\w[\w, ]*): (.*(?:\n {12}.*)*)", re.MULTILINE)  # of a docstring
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
 

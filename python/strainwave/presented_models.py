@@ -35,7 +35,7 @@ class Model(Presented):
         return _numbers(self, "", noted=True)
 
     def __repr__(self: Any) -> str:
-        """As one writes it in Python, if that has at most 120 characters; else its laws, or the first of its numbers."""
+        """Return the Python expression of the model if it has at most 120 characters; else its laws, or its first numbers."""
         from strainwave.files.described import parts
 
         whole = str(_constructors[type(self)](self))

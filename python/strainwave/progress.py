@@ -8,7 +8,7 @@ is worked on and with the share of the whole that is done.
 >>> with by_count(lambda stage, share: shares.append((stage, share)), "simulating", 4) as done:
 ...     for step in range(5):
 ...         done(step)
->>> shares[-2:]  # the end is told in any case
+>>> shares[-2:]  # the end is always reported
 [('simulating', 1.0), ('simulating', 1.0)]
 """
 

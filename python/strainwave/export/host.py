@@ -1,4 +1,4 @@
-"""What a host program gives an exported drive: a name, a command that is held or followed, and an internal step."""
+"""Inputs of an exported drive by its host program: a name, a command that is held or followed, and an internal step."""
 
 from __future__ import annotations
 

@@ -182,7 +182,7 @@ def _card(result: FileResult, anchor: str) -> dict[str, Any]:
 def _caption(result: FileResult, picture: Picture) -> str:
     curves = picture.curves
     of, words = curves.unit(curves.names[1]), [f"Model: {picture.model or result.model}."]
-    if result.held_out is None or result.held_out.unit != of:  # else the error on held-out data stands beside it
+    if result.held_out is None or result.held_out.unit != of:  # else the table has the error on held-out data
         words.append(f"RMS error {quantity(rms(residual_of(curves)), of)}.")
     if "residual" in curves:
         words.append("The slow part above is what load and lost motion add; it is taken out below, too.")

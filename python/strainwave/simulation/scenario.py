@@ -504,7 +504,7 @@ def _command(name: str, value: object) -> tuple[float, str]:
 
 
 def _difference(name: str, value: object) -> tuple[float, str]:
-    """As `_command`, for a difference: degC is refused, as its zero does not count."""
+    """Return a difference as `_command` does; refuse degC, whose zero is not that of K."""
     number, unit = _command(name, value)
     if unit == "degC":
         raise ValueError(f"{name} = {shortened(value)} is a difference of temperatures: write 5 degC as 5 K")

@@ -125,7 +125,7 @@ def chance_of_gain(before: float, left: float, more: int, freedom: float) -> flo
 
 @dataclass(frozen=True)
 class Shape:
-    """What repeats of a residual over an abscissa.
+    """Repeating part of a residual over an abscissa.
 
     Attributes:
         size: root mean square, without what noise adds

@@ -78,7 +78,7 @@ def test_no_delay_between_encoders_is_longer_than_five_samples() -> None:
 
 
 def ratios(change: float) -> NDArray[np.float64]:
-    """Of both standard deviations, where viscous friction is larger by this share in the second half than in the first."""
+    """Return sigma by blocks over sigma of the fit; viscous friction rises by the share `change` along the record."""
     random = np.random.default_rng(2)
     speed = random.uniform(1.0, 50.0, 600) * random.choice([-1.0, 1.0], 600)
     noise = 1e-4 * random.standard_normal(len(speed))

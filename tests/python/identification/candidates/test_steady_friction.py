@@ -121,7 +121,7 @@ def run(angle: Array, torque: Array, **more: Array) -> sw.Recording:
 
 
 def off(seed: int) -> Array:
-    """Of a run over 19.7 turns, with noise of P's own RMSE."""
+    """A run over 19.7 turns, with noise of the RMSE that the position control article states."""
     numbers, _ = truth(seed)
     angle = np.linspace(30.0, 30.0 + 19.7 * 2.0 * np.pi, 1500)
     torque = level(numbers, angle) + 5.2e-3 * np.random.default_rng(1000 + seed).normal(size=len(angle))

@@ -30,7 +30,7 @@ def gear_with(phase: float) -> sw.Gear:
 
 
 def test_a_short_travel_sees_the_slope_of_the_error() -> None:
-    """Of one order anywhere in the turn: i A B / sqrt 2."""
+    """One order at a random place of the turn gives i A B / sqrt 2, times the chord over the travel."""
     gear = gear_with(0.3)
     loop = TorsionLoop.of(loop_of(gear, 0.0), gear)
     chord = np.sin(ORDER * TRAVEL) / (ORDER * TRAVEL)  # of a travel to both sides
