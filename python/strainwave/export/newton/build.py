@@ -35,7 +35,6 @@ from strainwave.tuning.drawn import drawn_gears
 from strainwave.tuning.loss import ExportLoss
 
 Array = NDArray[np.float64]
-MAX_NAME_LENGTH = 60  # characters
 COMPARED = ("torque", "load_torque", "twist", "input_speed", "current")
 COMPARED_DURATION = 0.2  # s
 COMPARED_BEGIN = 0.02  # s, of the command
