@@ -271,6 +271,16 @@ def test_names_of_strangers_are_shown_as_they_are() -> None:
 
 
 @pytest.mark.slow("report")
+def test_a_log_without_torque_constant_has_its_curves_in_a_notebook() -> None:
+    """Its numbers are in A, so none can be compared with the start set."""
+    log = Path(sw.__file__).parent / "demo" / "robot_log.csv"
+    identified = sw.identify("hfuc-20-80", [log], progress=False)
+    with pytest.raises(ValueError, match="nothing to compare"):
+        identified.plot()
+    assert "measured" in " ".join(Page(identified._repr_html_()).texts)
+
+
+@pytest.mark.slow("report")
 def test_a_result_has_a_picture_by_its_type() -> None:
     for name, result in results().items():
         if hasattr(result, "plot"):

@@ -131,6 +131,10 @@ class Identified(ComparedByFields, Pictured, Reported):
         """
         return over_start_figure(self.states, self.start_set, self.gear_set.name)
 
+    def _picture(self) -> Figure | None:
+        """Return measured and modelled curves of the first file that has any; else the numbers over those of the start set."""
+        return next((file.plot() for file in self.files if file.pictures), None) or super()._picture()
+
     def _headline(self) -> str:
         checks = counted(len(self.checks), "check")
         verdict = f"{len(self.failed)} of {checks} FAILED" if self.failed else f"{checks} passed"
