@@ -24,8 +24,14 @@ SOURCE = ROOT / "python"
 MODULES = [path for path in sorted(SOURCE.rglob("*.py")) if ">>>" in path.read_text()]
 SLOW_MODULES = {
     SOURCE / "strainwave" / name
-    for name in ("tuning/compensate.py", "diagnose/smallest_error.py", "diagnose/inversion.py", "orders/two_encoders.py")
-}  # their examples take 0.4 s and more
+    for name in (
+        "tuning/compensate.py",
+        "diagnose/inversion.py",
+        "diagnose/misalignment_sweep.py",
+        "diagnose/smallest_error.py",
+        "orders/two_encoders.py",
+    )
+}  # their examples take 0.4 s and more, before a kernel of them is kept
 FENCE = re.compile(r"^```(?:python\n|console\n(?=\$ (?:strainwave|python papers/)))(.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"^```\w+\n(# (\S+\.\w+)\n.*?)^```$", re.MULTILINE | re.DOTALL)
 
