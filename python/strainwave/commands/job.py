@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from io import TextIOBase
 from typing import Any
 
@@ -45,7 +45,7 @@ def main(words: list[str]) -> int:
         channel.flush()
 
     limit_process(MAX_PROCESSOR_TIME, MAX_MEMORY)
-    sys.stdout = sys.stderr = Lines(lambda line: tell(line=line))  # type: ignore[assignment]
+    sys.stdout = sys.stderr = Lines(lambda line: tell(line=line))
     sys.argv = ["strainwave", *words]
     with watched_by(_progress(tell)):
         if words[:1] == [READ]:
@@ -116,25 +116,30 @@ def _reading(name: str, file: Any, mapping_of: Callable[[Any], Any]) -> dict[str
     from strainwave.identification.reading.recognise import recognise
 
     try:
-        labels = [label.text or f"column {place}" for place, label in enumerate(file.table.labels, start=1)]
         read = recognise(file, mapping_of(file.path))
     except QuestionError as question:
         return {"name": name, "columns": _columns(file), "question": question_of(question)}
     except (ValueError, OSError, ImportError, MemoryError) as error:
         return {"name": name, "problem": str(error)}
-    used = {column: channel for channel, column in read.columns.items()}
     columns = [
-        {"column": label, "channel": channel, "unit": read.units.get(channel, ""), "assumed": channel in read.units_assumed}
+        {"column": column, "channel": channel, "unit": read.units.get(channel, ""), "assumed": channel in read.units_assumed}
         | _range(read.recording, channel)
-        for label in labels
-        for channel in [used.get(label, "")]
+        for channel, column in read.columns.items()
     ]
-    told = {"kind": KINDS[read.kind].title, "side": read.side, "joint": read.joint, "rows": len(read.recording[read.recording.names[0]])}
+    columns += _columns(file, {*read.columns.values()})
+    told = {
+        "kind": KINDS[read.kind].title,
+        "side": read.side,
+        "joint": read.joint,
+        "rows": len(read.recording[read.recording.names[0]]),
+    }
     return {"name": name, "columns": columns, "why": [*read.why], "remarks": [*read.remarks]} | told
 
 
-def _columns(file: Any) -> list[dict[str, Any]]:
-    return [{"column": label.text, "channel": "", "unit": label.unit or ""} for label in file.table.labels]
+def _columns(file: Any, used: Collection[str] = ()) -> list[dict[str, Any]]:
+    """Return the columns of a file but those of these names."""
+    others = [label for label in file.table.labels if not {label.name, label.text} & {*used}]
+    return [{"column": label.text, "channel": "", "unit": label.unit or ""} for label in others]
 
 
 def _range(recording: Any, channel: str) -> dict[str, Any]:

@@ -17,7 +17,8 @@ DEFAULT_PORT = 8765
 def studio(
     context: typer.Context,
     paths: Annotated[
-        list[Path] | None, typer.Argument(metavar="[FILE…]", help="A gear file and recordings, or folders of them, to begin with.")
+        list[Path] | None,
+        typer.Argument(metavar="[FILE…]", help="A gear file and recordings, or folders of them, to begin with."),
     ] = None,
     port: Annotated[int, whole("Port of this machine; 0 takes a free one.")] = DEFAULT_PORT,
     host: Annotated[str, typer.Option(help="Address to serve; any other than the default lets other machines in.")] = LOOPBACK,

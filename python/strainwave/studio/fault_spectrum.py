@@ -1,4 +1,4 @@
-"""What a misalignment of the wave generator does to the orders of the motor current, and the smallest line that a record shows."""
+"""Orders of the motor current under a misalignment of the wave generator, and the smallest lines that a record shows."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ MAX_MISALIGNMENT = 1e-3  # m and rad: beyond it the wave generator would not fit
 MOVED = ("housing_eccentricity", "housing_tilt_x", "generator_eccentricity", "generator_tilt_x")
 
 
-def fault_spectrum(drive: Drive, moved: Mapping[str, float], record: Mapping[str, float], combine: str = "mean") -> dict[str, Any]:
+def fault_spectrum(
+    drive: Drive, moved: Mapping[str, float], record: Mapping[str, float], combine: str = "mean"
+) -> dict[str, Any]:
     """Return the amplitudes of the current of a drive without and with a misalignment, by order, with the detection limits.
 
     Args:
@@ -35,7 +37,9 @@ def fault_spectrum(drive: Drive, moved: Mapping[str, float], record: Mapping[str
     [2.0]
     """
     law, is_assumed = wave_generator(drive)
-    sizes = {name: arguments.number(name, moved.get(name, 0.0), "", "[]", -MAX_MISALIGNMENT, MAX_MISALIGNMENT) for name in MOVED}
+    sizes = {
+        name: arguments.number(name, moved.get(name, 0.0), "", "[]", -MAX_MISALIGNMENT, MAX_MISALIGNMENT) for name in MOVED
+    }
     numbers = {name: arguments.number(name, record.get(name)) for name in ("speed", "load_torque", "duration", "rate", "noise")}
     run = SteadyRun.of(drive, numbers["speed"], numbers["load_torque"], numbers["duration"], numbers["rate"], max(ORDERS))
     healthy, misaligned = (run.with_law(law.replace(**of, combine=combine)) for of in ({}, sizes))

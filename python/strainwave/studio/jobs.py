@@ -6,7 +6,7 @@ import asyncio
 import json
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ MAX_LINES = 1000  # of the output of a job
 MAX_EVENT = 2**22  # bytes of a line of a job
 STATE_FILE = "job.json"
 RUNS_VERB = ("-m", "strainwave.commands.job")
-STATES = {0: "done", exit_codes.RESULT_CONTRADICTED: "contradicted"}
+STATES = {0: "done", exit_codes.RESULT_CONTRADICTED: "contradicted", exit_codes.INPUT_REFUSED: "refused"}
 
 
 class Jobs:
@@ -58,7 +58,15 @@ class Jobs:
         folder = self._workspace.results / name
         words = form.words_of(values, self._workspace.path_of, folder)
         folder.mkdir()
-        job = {"id": name, "verb": verb, "values": dict(values), "state": "waiting", "lines": [], "files": [], "begun": time.time()}
+        job = {
+            "id": name,
+            "verb": verb,
+            "values": dict(values),
+            "state": "waiting",
+            "lines": [],
+            "files": [],
+            "begun": time.time(),
+        }
         self.jobs[name] = job
         self._tell(job, "waiting")
         self._tasks[name] = asyncio.create_task(self._run(job, words))
@@ -84,43 +92,69 @@ class Jobs:
         """
         known = ("paths", "column", "unit", "constant", "side", "joint", "kind", "gear")
         form = self._forms["identify"]
-        words = form.words_of({"gear": "hfuc-20-80"} | {name: values[name] for name in known if name in values}, self._workspace.path_of, Path())
+        words = form.words_of(
+            {"gear": "hfuc-20-80"} | {name: values[name] for name in known if name in values}, self._workspace.path_of, Path()
+        )
         end = words.index("--")
         found: list[dict[str, Any]] = []
         async with self._running:
-            async for event in _events(["read", *words[1:end], "--", *words[end + 2 :]], self._workspace.folder):
+            async for event in self._events(["read", *words[1:end], "--", *words[end + 2 :]]):
                 found = event.get("readings", found)
         return found
 
+    async def _events(self, words: list[str]) -> AsyncIterator[dict[str, Any]]:
+        """Yield what the process of a verb reports, files by their names on the page, and at last its exit code."""
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, *RUNS_VERB, *words),
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.STDOUT,
+            cwd=self._workspace.folder,
+            limit=MAX_EVENT,
+            start_new_session=True,
+        )
+        assert process.stdout is not None
+        names = {json.dumps(str(path))[1:-1]: json.dumps(name)[1:-1] for name, path in self._workspace.files.items()}
+        try:
+            async for line in process.stdout:
+                text = line.decode(errors="replace").rstrip()
+                for path, name in names.items():
+                    text = text.replace(path, name)
+                yield _event(text)
+            yield {"code": await process.wait()}
+        finally:
+            if process.returncode is None:
+                kill_group(process.pid)
+                await process.wait()
+
     async def _run(self, job: dict[str, Any], words: list[str]) -> None:
-        begun = time.monotonic()
+        begun, state = time.monotonic(), "failed"
         try:
             async with self._running:
                 self._tell(job, "running")
-                async for event in _events(words, self._workspace.folder):
-                    self._take(job, event)
+                async for event in self._events(words):
+                    if "code" in event:
+                        state = "asked" if "question" in job else STATES.get(event["code"], "failed")
+                    else:
+                        self._take(job, event)
         except asyncio.CancelledError:
-            job["state"] = "cancelled"
+            state = "cancelled"
         except (OSError, ValueError) as error:
             job["lines"].append(str(error))
-            job["state"] = "refused"
+            state = "refused"
         finally:
             self._tasks.pop(job["id"], None)
             folder = self._workspace.results / job["id"]
-            names = sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+            names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
             job |= {"files": [name for name in names if name != STATE_FILE], "seconds": time.monotonic() - begun}
-            self._tell(job, job["state"])
+            self._tell(job, state)
 
     def _take(self, job: dict[str, Any], event: dict[str, Any]) -> None:
         """Take over what a process reports."""
-        if "code" in event:
-            ended = STATES.get(event["code"], "refused" if event["code"] == exit_codes.INPUT_REFUSED else "failed")
-            job["state"] = "asked" if "question" in job else ended
-        elif "line" in event:
-            if len(job["lines"]) < MAX_LINES:
-                job["lines"].append(str(event["line"]))
-        elif event.keys() <= {"stage", "share", "question"}:
-            job |= event
+        if "line" not in event:
+            job |= {name: event[name] for name in ("stage", "share", "question") if name in event}
+        elif len(job["lines"]) < MAX_LINES:
+            job["lines"].append(str(event["line"]))
         self._tell(job)
 
     def _tell(self, job: dict[str, Any], state: str | None = None) -> None:
@@ -132,35 +166,13 @@ class Jobs:
         self._changed(job)
 
 
-async def _events(words: list[str], folder: Path) -> Any:
-    """Yield what the process of a verb reports, and at last its exit code."""
-    process = await asyncio.create_subprocess_exec(
-        *(sys.executable, *RUNS_VERB, *words),
-        stdin=asyncio.subprocess.DEVNULL,
-        stdout=asyncio.subprocess.PIPE,
-        stderr=asyncio.subprocess.STDOUT,
-        cwd=folder,
-        limit=MAX_EVENT,
-        start_new_session=True,
-    )
-    assert process.stdout is not None
-    try:
-        async for line in process.stdout:
-            yield _event(line)
-        yield {"code": await process.wait()}
-    finally:
-        if process.returncode is None:
-            kill_group(process.pid)
-            await process.wait()
-
-
-def _event(line: bytes) -> dict[str, Any]:
+def _event(line: str) -> dict[str, Any]:
     """Return what a line of a process reports; one that it did not write as an event is a line of its output."""
     try:
         event = json.loads(line)
     except ValueError:
         event = None
-    return event if isinstance(event, dict) else {"line": line.decode(errors="replace").rstrip()}
+    return event if isinstance(event, dict) else {"line": line}
 
 
 def _earlier(results: Path) -> list[dict[str, Any]]:

@@ -46,7 +46,9 @@ def serve(
 
         from strainwave.studio.server import Studio, application
     except ImportError:
-        raise ImportError("the studio is served by starlette, uvicorn and websockets: pip install 'strainwave[studio]'") from None
+        raise ImportError(
+            "the studio is served by starlette, uvicorn and websockets: pip install 'strainwave[studio]'"
+        ) from None
     workspace = Workspace(folder.resolve(), opened)
     studio = Studio(workspace, forms(verbs), first_gear(opened))
     listener = _listener(host, port)

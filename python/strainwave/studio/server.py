@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from contextlib import asynccontextmanager, suppress
 from importlib import resources
 from secrets import compare_digest
-from typing import Any
+from typing import Any, NamedTuple
 
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
@@ -36,10 +36,35 @@ PAGE_POLICY = (
     "connect-src 'self'; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 # Of what jobs wrote: a report has its style and pictures within, and no scripts.
-RESULT_POLICY = "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'self'"
+RESULT_POLICY = (
+    "sandbox allow-popups; default-src 'none'; style-src 'unsafe-inline'; img-src 'self' data:; frame-ancestors 'self'"
+)
 SHOWN = {".html": "text/html; charset=utf-8", ".png": "image/png", ".svg": "image/svg+xml"}  # any other file is a text
 REFUSED_HANDSHAKE = 1008  # code of a closed socket: policy violated
 PARTS = resources.files("strainwave.studio").joinpath("page")
+
+
+class _Wish(NamedTuple):
+    """What a page asks: what to do, with the name of a verb or a job, and values."""
+
+    do: str
+    name: str
+    values: dict[str, Any]
+
+    @classmethod
+    def of(cls, text: str) -> _Wish:
+        """Return what a message asks.
+
+        Raises:
+            ValueError: it is no such message
+        """
+        message = json.loads(text)
+        if not isinstance(message, dict):
+            raise ValueError("an object is expected")
+        do, name, values = message.get("do"), message.get("name", ""), message.get("values", {})
+        if not (isinstance(do, str) and isinstance(name, str) and isinstance(values, dict)):
+            raise ValueError("do, name and values are expected")
+        return cls(do, name, values)
 
 
 class Guard:
@@ -91,9 +116,9 @@ class Studio:
     """The pages of a workspace: what they ask and what they are told."""
 
     def __init__(self, workspace: Workspace, forms: Mapping[str, Form], gear: GearSet | None) -> None:
-        self.workspace, self.forms, self.gear = workspace, forms, gear
-        self.jobs = Jobs(workspace, forms, lambda job: self._tell_all({"job": job}))
+        self.workspace = workspace
         self._pages: set[asyncio.Queue[str]] = set()
+        self.jobs = Jobs(workspace, forms, lambda job: self._tell_all({"job": job}))
         self.assets = assets(gear, forms)
 
     async def home(self, request: Request) -> Response:
@@ -133,8 +158,8 @@ class Studio:
         sender = asyncio.create_task(_send_all(socket, told))
         try:
             while True:
-                await self._take(json.loads(await socket.receive_text()), told, newest)
-        except (WebSocketDisconnect, ValueError, KeyError, AttributeError, RuntimeError):  # or a page of another kind
+                await self._take(_Wish.of(await socket.receive_text()), told, newest)
+        except (WebSocketDisconnect, ValueError, KeyError, RuntimeError):  # it has gone, or is none of these pages
             pass
         finally:
             self._pages.discard(told)
@@ -143,26 +168,25 @@ class Studio:
             with suppress(RuntimeError):
                 await socket.close()
 
-    async def _take(self, message: dict[str, Any], told: asyncio.Queue[str], newest: dict[str, asyncio.Task[None]]) -> None:
+    async def _take(self, wish: _Wish, told: asyncio.Queue[str], newest: dict[str, asyncio.Task[None]]) -> None:
         """Do what a page asks."""
-        wanted = message["do"]
         try:
-            if wanted == "start":
-                told.put_nowait(json.dumps({"started": self.jobs.start(message["verb"], message["values"])}))
-            elif wanted == "cancel":
-                self.jobs.cancel(message["job"])
-            elif wanted in LIVE:
-                if wanted in newest:
-                    newest[wanted].cancel()
-                newest[wanted] = asyncio.create_task(self._answer(wanted, message["values"], told))
+            if wish.do == "start":
+                told.put_nowait(json.dumps({"started": self.jobs.start(wish.name, wish.values)}))
+            elif wish.do == "cancel":
+                self.jobs.cancel(wish.name)
+            elif wish.do in LIVE:
+                if wish.do in newest:
+                    newest[wish.do].cancel()
+                newest[wish.do] = asyncio.create_task(self._answer(wish, told))
         except (ValueError, OSError) as error:
             told.put_nowait(json.dumps({"problem": str(error)}))
 
-    async def _answer(self, wanted: str, values: dict[str, Any], told: asyncio.Queue[str]) -> None:
+    async def _answer(self, wish: _Wish, told: asyncio.Queue[str]) -> None:
         try:
-            answer = {wanted: await LIVE[wanted](self, values)}
+            answer = {wish.do: await LIVE[wish.do](self, wish.values)}
         except (ValueError, TypeError, KeyError, OSError, ArithmeticError) as error:
-            answer = {"problem": str(error), "of": wanted}
+            answer = {"problem": str(error), "of": wish.do}
         told.put_nowait(json.dumps(answer))
 
     def _state(self) -> dict[str, Any]:
@@ -207,22 +231,26 @@ def assets(gear: GearSet | None, forms: Mapping[str, Form]) -> dict[str, str]:
         FileNotFoundError: the workbench was not built
     """
     html = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>\n?', "", page(gear))
-    made = dict[str, str]()
+    made = {name: PARTS.joinpath(name).read_text("utf-8") for name in ("studio.js", "studio.css")}
 
     def apart(match: re.Match[str]) -> str:
         name = f"workbench-{len(made)}.{'css' if match['tag'] == 'style' else 'js'}"
         made[name] = match["content"]
-        return f'<link rel="stylesheet" href="asset/{name}">' if match["tag"] == "style" else f'<script src="asset/{name}"></script>'
+        return _style(name) if match["tag"] == "style" else _script(name)
 
     html = re.sub(r"<(?P<tag>style|script)>(?P<content>.*?)</(?P=tag)>", apart, html, flags=re.DOTALL)
-    sets = [*catalogue(), *catalogue("drives")]
-    about = f'<script type="application/json" id="studio-forms">{embedded({"pages": described(forms), "sets": sets, "channels": list(CHANNELS)})}</script>'
-    head = '<link rel="icon" href="data:,"><link rel="stylesheet" href="asset/studio.css">'
-    tail = f'{about}<script src="asset/studio.js"></script>'
-    html = html.replace("</head>", f"{head}</head>").replace("</body>", f"{tail}</body>").replace("<body>", '<body class="studio">')
-    for name in ("studio.js", "studio.css"):
-        made[name] = PARTS.joinpath(name).read_text("utf-8")
-    return {"index.html": html, **made}
+    about = {"pages": described(forms), "sets": [*catalogue(), *catalogue("drives")], "channels": list(CHANNELS)}
+    data = f'<script type="application/json" id="studio">{embedded(about)}</script>'
+    html = html.replace("</head>", f'<link rel="icon" href="data:,">{_style("studio.css")}</head>')
+    return {"index.html": html.replace("</body>", f"{data}{_script('studio.js')}</body>"), **made}
+
+
+def _style(name: str) -> str:
+    return f'<link rel="stylesheet" href="asset/{name}">'
+
+
+def _script(name: str) -> str:
+    return f'<script src="asset/{name}"></script>'
 
 
 def application(studio: Studio, token: str, hosts: frozenset[str]) -> ASGIApp:

@@ -1,4 +1,4 @@
-"""The folder of a studio: files opened from the command line, uploads, and the results of jobs. A page knows their names alone."""
+"""The folder of a studio: files opened from the command line, uploads, and results. A page knows their names alone."""
 
 from __future__ import annotations
 
@@ -81,19 +81,25 @@ class Workspace:
             ValueError: the name is none of a file, or the file is too large
         """
         if not NAME.fullmatch(name):
-            raise ValueError(f"{quoted(name)} is no name of a file here: begin with a letter or digit, then letters, digits, _ - . , + = ( )")
+            raise ValueError(
+                f"{quoted(name)} is no name of a file here: begin with a letter or digit, then letters, digits, _ - . , + = ( )"
+            )
         files = list(self.uploads.iterdir())
         room = MAX_UPLOADS - sum(path.stat().st_size for path in files)
         if len(files) >= MAX_FILES:
             raise ValueError(f"this studio has {MAX_FILES} files; remove some from {self.uploads}")
         taken, stem, suffix = self.files, Path(name).stem, Path(name).suffix
-        free = next(each for each in (name, *(f"{stem}-{count}{suffix}" for count in range(2, MAX_FILES + 2))) if each not in taken)
+        free = next(
+            each for each in (name, *(f"{stem}-{count}{suffix}" for count in range(2, MAX_FILES + 2))) if each not in taken
+        )
         size = 0
         with replacing(self.uploads / free) as file:
             async for part in content:
                 size += len(part)
                 if size > min(MAX_UPLOAD, room):
-                    raise ValueError(f"{quoted(name)} is larger than {min(MAX_UPLOAD, room) / 1e6:.0f} MB; open it from the command line")
+                    raise ValueError(
+                        f"{quoted(name)} is larger than {min(MAX_UPLOAD, room) / 1e6:.0f} MB; open it from the command line"
+                    )
                 file.write(part)
         return free
 

@@ -1,7 +1,6 @@
 // Pages of the studio beside those of the workbench: forms of the verbs of the command, files, jobs and their reports.
 
 const RECONNECT = 1000; // ms between two attempts
-const LIVE_REST = 150; // ms without a change of a slider before the last value is sent anyway
 const ENDED = { done: "done", contradicted: "a check failed", asked: "a question is open", refused: "refused", failed: "failed", cancelled: "cancelled", interrupted: "interrupted: the server ended" };
 const SHEETS = { Gear: "gear", Drive: "motor, controller, load and a run" }; // of the workbench itself
 const CHOICES = { side: ["", "input", "output"] };
@@ -165,7 +164,7 @@ class Sheet {
   }
   start() {
     this.message.textContent = "";
-    this.studio.ask({ do: "start", verb: this.verb.value, values: this.filled });
+    this.studio.ask({ do: "start", name: this.verb.value, values: this.filled });
   }
   // ---- Files ---------------------------------------------------------------------------------------------------------
   filesChanged() {
@@ -205,10 +204,11 @@ class Sheet {
     if (kind) box.append(element("p", {}, [kind, side && `at the ${side}`, joint && `joint ${joint}`, `${rows} rows`].filter(Boolean).join(", ")));
     if (question) box.append(this.question(question, () => this.askReadings()));
     if (kind) box.append(this.sideMenu(side));
-    const table = element("table", {}, element("thead", {}, element("tr", {}, ...["column", "is", "unit", "from … to"].map((text) => element("th", { scope: "col" }, text)))));
-    const body = element("tbody", {}, ...columns.map((column) => this.column(column)));
-    table.append(body);
-    box.append(element("details", { open: columns.length < 12 }, element("summary", {}, `${columns.length} columns`), element("div", { className: "wide" }, table)));
+    const head = element("thead", {}, element("tr", {}, ...["column", "is", "unit", "from … to"].map((text) => element("th", { scope: "col" }, text))));
+    const [used, others] = [true, false].map((is) => columns.filter(({ channel }) => Boolean(channel) === is).map((column) => this.column(column)));
+    const tableOf = (rows) => element("div", { className: "wide" }, element("table", {}, head.cloneNode(true), element("tbody", {}, ...rows)));
+    if (used.length) box.append(tableOf(used));
+    if (others.length) box.append(element("details", { open: !used.length && !question }, element("summary", {}, `${others.length} columns that are not used`), tableOf(others)));
     if (why?.length || remarks?.length) box.append(element("details", {}, element("summary", {}, "Why, and remarks"), element("ul", {}, ...[...(why ?? []), ...(remarks ?? [])].map((line) => element("li", {}, line)))));
     return box;
   }
@@ -268,7 +268,7 @@ class Sheet {
     const head = element("div", { className: "bar" }, element("h3", {}, id), element("span", { className: state === "done" ? "" : "quiet" }, runs ? state : `${ENDED[state] ?? state}${seconds ? `, ${shortText(seconds, 2)} s` : ""}`));
     const box = element("article", { className: `job ${state}` }, head);
     if (runs) {
-      const cancel = element("button", { type: "button", onclick: () => this.studio.ask({ do: "cancel", job: id }) }, "Cancel");
+      const cancel = element("button", { type: "button", onclick: () => this.studio.ask({ do: "cancel", name: id }) }, "Cancel");
       const bar = element("progress", { "aria-label": "progress" });
       if (typeof share === "number") bar.value = share;
       head.append(cancel);
@@ -318,8 +318,8 @@ class FaultSheet extends Sheet {
     this.reading = element("p", { className: "numbers", role: "status" });
     const live = element("article", { className: "plot live" }, element("h2", {}, "Misalignment and the orders of the current"),
       element("div", { className: "sliders" }, element("label", { className: "slider" }, element("span", {}, "drive"), drive), element("label", { className: "slider" }, element("span", {}, "lobes share"), combine),
-        slider("moved", "housing_eccentricity", "eccentricity of the shaft", 0, 200, 1e-6, "µm"), slider("moved", "housing_tilt_x", "tilt of the shaft", -2, 2, 1e-4, "× 0.1 mrad"),
-        slider("moved", "generator_eccentricity", "eccentricity of the generator", 0, 200, 1e-6, "µm"), slider("moved", "generator_tilt_x", "tilt of the generator", -2, 2, 1e-4, "× 0.1 mrad"),
+        slider("moved", "housing_eccentricity", "eccentricity of the shaft", 0, 200, 1e-6, "µm"), slider("moved", "housing_tilt_x", "tilt of the shaft", -1, 1, 1e-3, "mrad"),
+        slider("moved", "generator_eccentricity", "eccentricity of the generator", 0, 200, 1e-6, "µm"), slider("moved", "generator_tilt_x", "tilt of the generator", -1, 1, 1e-3, "mrad"),
         slider("record", "speed", "speed of the input", 5, 150, 1, "rad/s"), slider("record", "noise", "noise of the current", 0, 0.2, 1, "A")),
       this.canvas, this.reading);
     const content = super.content();
@@ -341,11 +341,11 @@ class FaultSheet extends Sheet {
       { x: wide, y: [limit[0], ...limit, limit.at(-1)], colour: "--data", dash: true },
     ]);
     const shown = orders.filter((_, i) => Math.abs(misaligned[i] - healthy[i]) > limit[i]);
-    this.reading.textContent = `${shown.length ? `order ${shown.join(", ")} changes by more than the limit` : "no order changes by more than the limit"}, the smallest change that such a record shows (grey). Blue: misaligned, orange: without misalignment.${assumed ? " The drive has no dimensions of the wave generator: they are assumed." : ""}`;
+    this.reading.textContent = `${shown.length ? `${shown.length > 1 ? "Orders" : "Order"} ${shown.join(", ")} ${shown.length > 1 ? "change" : "changes"}` : "No order changes"} by more than the limit, the smallest line that such a record shows (grey). Blue: misaligned, orange: without misalignment.${assumed ? " The drive has no dimensions of the wave generator: they are assumed." : ""}`;
     this.canvas.setAttribute("aria-label", this.reading.textContent);
   }
   problem(text, of) { if (of === "spectrum") this.reading.textContent = text; else super.problem(text, of); }
 }
 
-const about = dataIn("studio-forms"), CHANNELS = about.channels;
+const about = dataIn("studio"), CHANNELS = about.channels;
 window.workbench.then((workbench) => { window.studio = new Studio(workbench, about); });
