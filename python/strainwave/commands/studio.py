@@ -25,7 +25,7 @@ def studio(
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
     out: Annotated[Path, folder("Folder for uploads and results; a later studio of it goes on.")] = Path("out/studio"),
 ) -> None:
-    """Serve pages to look at a gear, identify it, compensate it and try faults.
+    """Serve pages for gears, recordings and faults to a browser.
 
     The page is the workbench, with forms of the verbs of this command beside it. It sees the files named here, those dropped on
     it and its own results, and nothing else. Its address contains a token: whoever has it can use the studio.

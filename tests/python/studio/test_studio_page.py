@@ -17,7 +17,10 @@ from strainwave.workbench.page import is_installed
 from tests.python.workbench.test_page import browser  # noqa: F401 - a fixture
 
 pytest.importorskip("starlette")
-pytestmark = [pytest.mark.slow("report"), pytest.mark.skipif(not is_installed(), reason="python3 dev.py workbench builds the page")]
+pytestmark = [
+    pytest.mark.slow("report"),
+    pytest.mark.skipif(not is_installed(), reason="python3 dev.py workbench builds the page"),
+]
 
 TABLE = "speed [rad/s];torque [N.m]\n" + "".join(
     f"{speed};{0.05 + 3e-4 * speed + place % 2 * 1e-4:.6f}\n" for place, speed in enumerate((2, 5, 10, 20, 50, 100, 200))

@@ -97,7 +97,7 @@ class Studio {
 class Sheet {
   constructor(studio, page, forms) {
     Object.assign(this, { studio, page, forms, values: {}, chosenJob: null });
-    this.element = element("section", { className: "sheet", hidden: true, "aria-label": page });
+    this.element = element("section", { className: "sheet", hidden: true, role: "main", "aria-label": page });
     this.verb = element("select", { "aria-label": "what to do" }, ...forms.map(({ verb, summary }) => element("option", { value: verb }, `${verb}: ${summary}`)));
     this.verb.onchange = () => this.build();
     this.filesBox = element("div", { className: "files" });
@@ -111,7 +111,7 @@ class Sheet {
   }
   content() {
     this.shownBox = element("div", { className: "shown" }, this.readBox, this.jobsBox);
-    return [element("div", { className: "ask" }, this.verb, this.filesBox, this.formBox, this.message), this.shownBox];
+    return [element("div", { className: "ask" }, element("h1", {}, this.page), this.verb, this.filesBox, this.formBox, this.message), this.shownBox];
   }
   get form() { return this.studio.forms[this.verb.value]; }
   get takesFiles() { return this.form.fields.some(({ kind }) => kind === "files" || kind === "file"); }
@@ -122,7 +122,7 @@ class Sheet {
     const { fields } = this.form, first = fields.filter(({ required, kind }) => required && kind !== "files"), rest = fields.filter(({ required, name }) => !required && !this.isInTable(name));
     const begin = element("button", { className: "begin" }, `Run ${this.verb.value}`);
     this.formBox.replaceChildren(...first.map((field) => this.row(field)),
-      element("details", { open: this.hasOptions }, element("summary", {}, "Options"), ...rest.map((field) => this.row(field))), begin);
+      element("details", { open: this.hasOptions ?? !this.takesFiles }, element("summary", {}, "Options"), ...rest.map((field) => this.row(field))), begin);
     this.formBox.querySelector("details").ontoggle = ({ target }) => { this.hasOptions = target.open; };
     this.filesChanged();
     this.jobsChanged();
@@ -279,7 +279,7 @@ class Sheet {
     again.onclick = () => { this.values = structuredClone(job.values); this.verb.value = verb; this.build(); this.askReadings(); };
     head.append(again);
     if (question) box.append(this.question(question, () => this.start()));
-    if (lines.length) box.append(element("pre", {}, lines.join("\n")));
+    if (lines.length) box.append(element("pre", { tabIndex: 0, "aria-label": "output" }, lines.join("\n")));
     const link = (name) => element("a", { href: `results/${id}/${name.split("/").map(encodeURIComponent).join("/")}`, target: "_blank", rel: "noopener" }, name);
     if (files.length) box.append(element("p", { className: "links" }, ...files.filter((name) => !name.includes("/")).flatMap((name) => [link(name), " "])));
     if (files.includes("gear.toml")) {
