@@ -30,6 +30,7 @@ const TASKS = {
   }),
   /** Why a fit of measured values is refused, without a core. */
   refuse_fit: ({ numbers, measured }) => { try { fitted(() => null, numbers, numbers.map(() => ({})), numbers.map((_, i) => i), measured); } catch (error) { return error.message; } },
+  svg: ({ plot }) => svgOf(plot),
   columns: ({ texts }) => texts.map((text) => { try { const { x, y, skipped } = twoColumns(text, 5); return [[...x], [...y], skipped]; } catch (error) { return error.message; } }),
   /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
   compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {

@@ -9,6 +9,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 import strainwave as sw
@@ -19,6 +20,7 @@ from tests.python.command import strainwave
 from tests.python.workbench.node import needs_page
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+SVG = "{http://www.w3.org/2000/svg}"
 READINGS = """() => Object.fromEntries([...document.querySelectorAll(".plot")]
     .map(plot => [plot.id, plot.querySelector(".numbers").textContent]))"""
 INKED = """canvas => {
@@ -141,12 +143,16 @@ def test_exports_contain_the_gear_as_changed(tab: Any, tmp_path: Path) -> None:
     in_page = number(readings(tab), "run") * 3.141592653589793 / 10800.0
     assert in_page == pytest.approx(names["run"]["output_angle"][-1], rel=1e-3)
     tab.locator("#text-close").click()
-    for name in ("CSV", "PNG"):
+    for name in ("CSV", "PNG", "SVG"):
         with tab.expect_download() as loaded:
             tab.locator("#loop").get_by_role("button", name=name).click()
         loaded.value.save_as(tmp_path / name)
     assert (tmp_path / "CSV").read_text().startswith("curve,twist [arcmin],torque [N·m]\nnow,0,0\n")
     assert (tmp_path / "PNG").read_bytes().startswith(b"\x89PNG")
+    drawn = ElementTree.fromstring((tmp_path / "SVG").read_text())
+    assert {text.text for text in drawn.iter(f"{SVG}text")} >= {"twist [arcmin]", "torque [N·m]", "0"}
+    (curve,) = (path for path in drawn.iter(f"{SVG}path") if path.get("stroke-width") == "1.7")
+    assert curve.get("d", "").count("L") == 480  # three stretches
 
 
 @needs_page

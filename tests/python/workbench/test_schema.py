@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 import strainwave as sw
@@ -17,6 +18,7 @@ from tests.python.workbench.node import doubles, in_node, needs_node
 from tests.python.workbench.test_core import random_drives
 
 DRIVES = 60
+SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +156,37 @@ def test_another_gear_has_no_source_of_the_first(tmp_path: Path, key: Any) -> No
     assert made.gear == first.gear
     mine = {entry.source for path, entry in first.sources.items() if entry not in chosen.sources.values()}
     assert not mine & {entry.source for entry in made.sources.values()}
+
+
+@needs_node
+def test_a_plot_as_svg_has_its_points_where_its_axes_have_them() -> None:
+    axis = {"min": 0.0, "max": 4.0, "splits": [[0.0, "0"], [2.0, "2"]], "label": "</text> & "}
+    curves = [
+        {"x": [0.0, 1.0, "NaN", 4.0, 5.0], "y": [0.0, 2.0, "NaN", 4.0, 4.0], "colour": "#00f", "dash": True},
+        {"x": [2.0], "y": [1.0], "colour": "#0f0", "mark": "point"},
+        {"x": [2.0], "y": [1.0], "colour": "#f00", "mark": "bar"},
+    ]
+    frame = {"left": 60.0, "top": 10.0, "width": 400.0, "height": 200.0}
+    colours = {"ink": "#000", "grid": "#eee", "paper": "#fff"}
+    plot = {"title": "<script>", "width": 480, "height": 260, "frame": frame, "axes": [axis] * 2} | {
+        "curves": curves,
+        "colours": colours,
+    }
+    drawn = ElementTree.fromstring(in_node("svg", plot=plot))
+    paths = {path.get("stroke", path.get("fill")): path.get("d") for path in drawn.iter(f"{SVG}path")}
+    assert paths["#00f"] == "M60 210L160 110M460 10L560 10"
+    assert paths["#0f0"] == "M259 159h2v2h-2z"
+    assert paths["#f00"] == "M260 210V160"
+    assert [text.get("x") for text in drawn.iter(f"{SVG}text") if text.text == "2"] == ["260", "54"]
+    assert {element.tag.removeprefix(SVG) for element in drawn.iter()} == {
+        "svg",
+        "title",
+        "rect",
+        "clipPath",
+        "path",
+        "text",
+        "g",
+    }
 
 
 @needs_node

@@ -233,7 +233,7 @@ class Workbench {
       card.at = element("small", { className: "at" });
       card.numbers = element("p", { className: "numbers" });
       card.bar = element("div", { className: "controls" });
-      const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png()))];
+      const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png())), this.button("SVG", () => this.download(`${card.key}.svg`, card.plot.svg(card.title)))];
       if (card.takes) save.unshift(this.button("Data…", () => this.askMeasured(card)));
       card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h2", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
       canvas.append(card.at);
