@@ -39,6 +39,8 @@ const TASKS = {
       loop: () => core.over("loop", sets.gear, twist),
       friction: () => core.over("friction", sets.gear, [speed, angle, load, temperature], 1, 0),
       error: () => core.over("error", sets.gear, angle, 2),
+      noise: () => [core.noise(sets.gear, angle)],
+      ratio: () => [[core.ratio(sets.gear)]],
       spring: () => core.over("spring", sets.gear, twist, 2),
       run: () => { const { code, rows } = core.run(sets.drive, instants, inputs, new Uint8Array(instants.length - 1).fill(1), recorded); return code ? null : rows; },
     };
@@ -51,13 +53,21 @@ const TASKS = {
     const begin = performance.now(), found = fitted((numbers, free) => core.slopes("loop_slopes", { ...gear, numbers }, x, free), gear.numbers, gear.fields, places, y);
     return { rms: found.rms, iterations: found.iterations, numbers: places.map((place) => found.numbers[place]), seconds: 1e-3 * (performance.now() - begin) };
   }),
+  /** Friction of a drive over speeds of the input or of the place, at each place. */
+  places: ({ schema, drive, speed, angle, view }, core) => {
+    const sets = setsOf(schema, completed(schema, "Drive", drive));
+    return PLACES.map((place) => {
+      const turns = turnsAt(core, sets, place);
+      return [...frictionAt(core, sets, speed.map((each) => each / turns), angle.map((each) => each / turns), { ...view, place })];
+    });
+  },
   /** Codes of verbs with spoilt sets and points; any trap ends this process. */
   spoil: async ({ schema, drives, spoilt }, core) => {
     const codes = { number: [], points: [], law: [], shape: [], counts: [] };
     const call = (set, points) => {
       const counts = core.put(set), n = points.length;
       core.doubles("points", 4 * n).set([...points, ...points, ...points, ...points.map(() => ROOM_TEMPERATURE)]);
-      return ["loop", "twist", "error", "spring"].map((verb) => core.call(verb, ...counts, n)).concat(core.call("friction", ...counts, n, 0));
+      return ["loop", "twist", "error", "noise", "ratio", "spring"].map((verb) => core.call(verb, ...counts, n)).concat(core.call("friction", ...counts, n, 0));
     };
     const points = [0, 1e-4, -1e-4], keep = [1, 1, 1], instants = [0, 1e-4, 2e-4, 3e-4];
     const inputs = [].concat(...Array.from({ length: 9 }, () => [0.1, 0, 0, 0, ROOM_TEMPERATURE, 0]));

@@ -77,6 +77,8 @@ def native(drive: sw.Drive) -> dict[str, list[Any] | None]:
         "loop": lambda: [gear.trace(TWIST)],
         "friction": lambda: [_core.differentiate_steady(gear, SPEED, ANGLE, *filled, [])[0]],
         "error": lambda: [gear.kinematic_error.error(ANGLE), gear.kinematic_error.slope(ANGLE)],
+        "noise": lambda: [gear.kinematic_noise.error(ANGLE)],
+        "ratio": lambda: [np.array([gear.kinematics.ratio])],
         "spring": lambda: [gear.stiffness.torque(TWIST), gear.stiffness.tangent(TWIST)],
         "run": lambda: list(native_run(drive)),
     }
@@ -115,6 +117,31 @@ def test_the_bits_are_those_of_the_package(drives: list[sw.Drive]) -> None:
                     assert doubles(encoded).tobytes() == np.ascontiguousarray(row).tobytes(), (name, drive)
             compared[name] += not has_arctan
     assert min(compared.values()) > DRIVES // 3, compared
+
+
+def test_friction_of_mesh_and_output_is_that_of_their_laws_at_their_shafts() -> None:
+    lossy = sw.friction.LoadDependent(
+        driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.25
+    )
+    wave = sw.friction.Cyclic(law=sw.friction.Coulomb(coulomb=0.4, viscous=0.5), order=[1.0], amplitude=[0.1], phase=[0.3])
+    gear = sw.load("csg-20-100").replace(friction_mesh=lossy, friction_output=wave)
+    view = {"load": 0.3, "temperature": 293.15}
+    drive = values_of(sw.Drive(gear=gear))
+    given = {"schema": schema(), "drive": drive, "speed": SPEED.tolist(), "angle": ANGLE.tolist(), "view": view}
+    found = dict(zip(("input", "mesh", "output", "sum"), in_node("places", core=True, **given), strict=True))
+
+    def steady(law: Any, ratio: float) -> NDArray[np.float64]:
+        alone = gear.replace(friction_input=law)
+        conditions = np.full(len(SPEED), 0.3 * ratio), np.full(len(SPEED), 293.15)
+        return _core.differentiate_steady(alone, SPEED / ratio, ANGLE / ratio, *conditions, [])[0]
+
+    ratio = gear.kinematics.ratio
+    assert ratio < 0.0  # the output turns the other way
+    assert found["input"] == pytest.approx(steady(gear.friction_input, 1.0), rel=1e-14)
+    assert found["mesh"] == pytest.approx(steady(lossy, -ratio), rel=1e-14)
+    assert found["output"] == pytest.approx(steady(wave, -ratio), rel=1e-14)
+    total = steady(gear.friction_input, 1.0) + (steady(lossy, ratio) + steady(wave, ratio)) / ratio
+    assert found["sum"] == pytest.approx(total, rel=1e-14)
 
 
 def test_no_set_of_numbers_ends_in_a_trap(drives: list[sw.Drive]) -> None:

@@ -234,6 +234,63 @@ def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
 
 @needs_page
 @pytest.mark.slow("report")
+def test_the_numbers_that_change_a_reading_most_stand_below_it(tab: Any) -> None:
+    assert readings(tab)["loop"].startswith("loop width 0.5 arcmin")
+    strongest = tab.locator("#loop .strongest")
+    shown = strongest.text_content().replace("\u00a0", " ")
+    assert shown.startswith("loop width changes most with 10 % more of: stiffness k1 −9.1 %, hysteresis breakaway 1 +3.3 %, ")
+    strongest.get_by_role("button", name="hysteresis breakaway 1").click()
+    assert tab.evaluate("document.activeElement.id") == "field-gear.hysteresis.breakaway.0"
+    field = tab.locator("#field-gear\\.hysteresis\\.breakaway\\.0")
+    field.fill(str(1.1 * float(field.input_value())))
+    field.press("Enter")
+    assert number(readings(tab), "loop") == pytest.approx(0.5 * 1.033, rel=1e-3)
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_friction_of_another_place_is_drawn_compared_and_fitted(tab: Any) -> None:
+    tab.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    tab.locator("#law-gear\\.friction_output").select_option("coulomb")
+    tab.locator("#friction").get_by_label("place of the friction").select_option("output")
+    for name, value in (("coulomb", "0.4"), ("viscous", "0.5")):
+        tab.locator(f"#field-gear\\.friction_output\\.{name}").fill(value)
+        tab.locator(f"#field-gear\\.friction_output\\.{name}").press("Enter")
+    assert number(readings(tab), "friction") == pytest.approx(0.4 + 0.5 * 0.524, rel=1e-3)
+    tab.locator("#friction").get_by_role("button", name="Data…").click()
+    assert "friction of the output" in tab.locator("#text-title").text_content()
+    rpm = 3.141592653589793 / 30.0
+    tab.locator("#text-content").fill("\n".join(f"{speed},{0.6 + 0.3 * speed * rpm}" for speed in range(1, 20)))
+    tab.locator("#text-use").click()
+    tab.get_by_role("button", name="Fit").click()
+    readings(tab)
+    law = tab.evaluate("workbench.then(each => each.state.drive.gear.friction_output)")
+    assert (law["coulomb"], law["viscous"]) == (pytest.approx(0.6, rel=1e-6), pytest.approx(0.3, rel=1e-6))
+    tab.locator("#friction").get_by_label("place of the friction").select_option("sum at the input")
+    assert "measured" not in readings(tab)["friction"]
+    gear = sw.load("csg-20-100")
+    expected = gear.friction_input.steady(52.4) + (0.6 + 0.3 * 0.524) / 100.0
+    assert number(readings(tab), "friction") == pytest.approx(expected, rel=1e-3)
+    tab.locator("#python").click()
+    names: dict[str, Any] = {}
+    exec(tab.locator("#text-content").input_value(), names)
+    assert names["friction"][-1] == pytest.approx(gear.friction_input.steady(210.0) + (0.6 + 0.3 * 2.1) / 100.0)
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_random_part_of_the_error_is_drawn_and_stated(tab: Any) -> None:
+    tab.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    assert "random" not in readings(tab)["error"]
+    tab.locator("#field-gear\\.kinematic_noise\\.amplitude").fill("0.1")
+    tab.locator("#field-gear\\.kinematic_noise\\.amplitude").press("Enter")
+    rms = float(re.search(r"RMS of this turn ([\d.]+)", readings(tab)["error"])[1])
+    assert 0.03 < rms < 0.3
+    assert number(readings(tab), "error") > 0.45
+
+
+@needs_page
+@pytest.mark.slow("report")
 def test_a_kept_gear_is_drawn_beside_and_any_law_can_be_chosen(tab: Any) -> None:
     tab.locator("#keep").click()
     for law in tab.evaluate("[...document.getElementById('law-gear.stiffness').options].map(each => each.value)"):

@@ -59,6 +59,8 @@ class Core {
     if (this.reason) throw new Error(this.reason);
     return { values, slopes: places.map((_, p) => this.doubles("slopes", (p + 1) * n).slice(p * n)) };
   }
+  noise(gear, angle) { return this.over("noise", gear, angle)[0]; }
+  ratio(gear) { return this.over("ratio", gear, [0])[0][0]; }
   error(gear, angle) { return this.over("error", gear, angle, 2); }
   spring(gear, twist) { return this.over("spring", gear, twist, 2); }
   /** The fastest rate of a drive [rad/s], and first instant, period and delay of its controller [s]. */

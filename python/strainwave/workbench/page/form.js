@@ -101,7 +101,7 @@ class Form {
     const doc = element("div", { className: "doc", id: `doc-${key}` }, this.limits(field, text, factor));
     const mark = element("small", { className: "mark" }), source = element("div", { className: "doc" });
     const made = element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text), " ", mark), input, slider, effect, doc, source);
-    const row = { field, path, input, slider, effect, factor, mark, source, made };
+    const row = { label: `${words(String(path.at(typeof path.at(-1) === "number" ? -3 : -2)))} ${label}`, field, path, input, slider, effect, factor, mark, source, made };
     const put = (value, done) => {
       const wrong = problemOf(field, value);
       input.classList.toggle("wrong", Boolean(wrong));

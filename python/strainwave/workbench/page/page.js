@@ -5,6 +5,8 @@ const SLOW_RUN = 14; // ms: a run that takes longer waits until the hand rests
 const REST = 120; // ms
 const MAX_MEASURED = 20000; // points
 const EFFECT = 1.1; // factor of a number whose effect is shown
+const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
+const MAX_STRONGEST = 4; // numbers below a plot
 const OUTPUTS = { "output angle": [3, "angle"], twist: [5, "angle"], "transmission error": [7, "angle"], torque: [8, "torque"], "input speed": [2, "speed"], "output speed": [4, "speed"] };
 const SIGNS = { "N.m": "N·m", "mN.m": "mN·m", "kgf.m": "kgf·m", "kgf.cm": "kgf·cm" };
 
@@ -14,7 +16,7 @@ const dataIn = (id) => JSON.parse(by(id).textContent);
 const VIEW = {
   units: { angle: "arcmin", speed: "rpm", torque: "N.m" },
   travel: { by: "torque", torque: 10, twist: 1e-3, history: "closed loop" },
-  friction: { maxSpeed: 210, speed: 52.4, angle: 0, load: 0, temperature: ROOM_TEMPERATURE },
+  friction: { place: "input", maxSpeed: 210, speed: 52.4, angle: 0, load: 0, temperature: ROOM_TEMPERATURE },
   run: { command: "step", amplitude: 0.1, frequency: 2, duration: 0.5, load: 0, shown: "output angle" },
   effect: "loop width",
 };
@@ -24,7 +26,7 @@ const POSITIVE = ["duration", "frequency", "maxSpeed", "temperature"]; // number
 
 /** A view from a link: finite numbers, and texts that their menus have; the rest is as in VIEW. */
 function viewFrom(schema, given, like = VIEW) {
-  const texts = { by: ["torque", "twist"], history: Object.keys(HISTORIES), command: ["step", "sine"], shown: Object.keys(OUTPUTS), effect: EFFECTS };
+  const texts = { by: ["torque", "twist"], history: Object.keys(HISTORIES), place: PLACES, command: ["step", "sine"], shown: Object.keys(OUTPUTS), effect: EFFECTS };
   if (like === VIEW.units) for (const of in like) texts[of] = Object.keys(schema.units[of]);
   const allowed = (key, value) => (typeof value === "number" ? Number.isFinite(value) && (value > 0 || !POSITIVE.includes(key)) : texts[key].includes(value));
   return Object.fromEntries(Object.entries(like).map(([key, value]) => {
@@ -36,6 +38,8 @@ function viewFrom(schema, given, like = VIEW) {
 
 /** A name of one line, of whole characters. */
 const nameFrom = (text) => text.slice(0, 80).toWellFormed().replace(/[\p{Cc}\p{Zl}\p{Zp}]/gu, " ");
+/** A relative change in percent, as "+3.3 %". */
+const changeText = (change) => `${change > 0 ? "+" : "−"}${shortText(Math.abs(100 * change), 2)}\u00a0%`;
 const sentence = (names) => `${[names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ")} ${names.length > 1 ? "are" : "is"} assumed`;
 
 /** A function of the sets of a drive whose result several plots of one frame share. */
@@ -45,6 +49,15 @@ function sharedByPlots(of) {
     if (!known.has(sets)) known.set(sets, of(sets));
     return known.get(sets);
   };
+}
+
+/** Python that computes the friction over the speed of the input at the place of a view. */
+function frictionPython({ place, load, temperature }) {
+  const of = (part, by) => `gear.${part}.steady(speed${by && " / ratio"}, load=${floatText(load)}${by && " * ratio"}, temperature=${floatText(temperature)})`;
+  const part = frictionPart(place);
+  if (place === "input") return [`friction = ${of(part, "")}  # N.m`];
+  if (part) return ["ratio = abs(gear.kinematics.ratio)", `friction = ${of(part, "ratio")}  # N.m, over speed / ratio`];
+  return ["ratio = gear.kinematics.ratio", `friction = ${of("friction_input", "")}`, ...["friction_mesh", "friction_output"].map((each) => `friction += ${of(each, "ratio")} / ratio  # N.m`)];
 }
 
 class Workbench {
@@ -151,12 +164,12 @@ class Workbench {
       const pieces = [card.of(this.sets, "one")];
       if (this.otherSets) { try { pieces.push(card.of(this.otherSets, "other")); } catch { /* the kept gear does not reach this */ } }
       card.pieces = pieces;
-      const measured = this.measured[card.key];
+      const measured = card.takes && this.measured[card.slot()];
       const curves = pieces.flatMap(({ curves }) => curves).reverse();
       if (measured) curves.unshift({ x: measured.x.map((value) => value / card.axes()[0].factor), y: measured.y.map((value) => value / card.axes()[1].factor), colour: "--data", mark: "point" });
       card.plot.show(card.axes().map(({ label }) => label), curves);
       const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? `${this.other.name}: ` : "", ...numbers.flatMap(([label, text], k) => [`${k ? ", " : ""}${label} `, element("b", {}, text)])));
-      if (measured) read.push(element("span", { className: "measured" }, "measured: ", element("b", {}, card.residual(measured)), " "), this.button("Fit", () => this.fit(card)));
+      if (measured) read.push(element("span", { className: "measured" }, "measured: ", element("b", {}, card.residual(measured)), " "), ...(card.fits().length ? [this.button("Fit", () => this.fit(card))] : []));
       card.numbers.replaceChildren(...read);
       card.element.querySelector(".canvas").setAttribute("aria-label", `${card.title}: ${card.numbers.textContent}`);
       return "";
@@ -181,20 +194,24 @@ class Workbench {
     const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
     const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
     const output = () => OUTPUTS[this.view.run.shown];
+    const friction = () => { // at the place of the view: words of its shaft
+      const { place } = this.view.friction, shaft = place === "mesh" || place === "output" ? "output" : "input";
+      return { shaft, axis: axis(place === "sum at the input" ? "friction, sum at the input" : `friction of the ${place}`, this.unit("torque")) };
+    };
     const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
     return [
       card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
         const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
         return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
           numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`], ...(which === "one" && this.assumes("hysteresis") ? [["from assumed numbers", ""]] : [])] };
-      }, { takes: true, fits: ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
+      }, { measure: "loop width", takes: true, slot: () => "loop", fits: () => ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
         const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
       card("stiffness", "Stiffness over torque", () => [axis("torque", this.unit("torque")), axis("stiffness", perAngle())], (sets, which, axes) => {
         const loop = turnLoop(sets), slopes = slopesOfLoop(loop), top = slopes.y.filter(Number.isFinite);
         return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
-      }),
+      }, { measure: "mean stiffness" }),
       card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
         const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
         const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
@@ -202,21 +219,23 @@ class Workbench {
         if (hasCommand) curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
         return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
       }, { slow: true, controls: () => this.runControls() }),
-      card("friction", "Friction over speed", () => [axis("input speed", this.unit("speed")), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
-        const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0];
-        return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))}`, text(at, this.unit("torque"))]] };
-      }, { takes: true, fits: ["friction_input"], controls: () => this.numberControls("friction", [["maxSpeed", "up to", "speed"], ["load", "load", "torque"], ["temperature", "temperature [K]", ""]]), residual: (measured) => {
+      card("friction", "Friction over speed", () => [axis(`${friction().shaft} speed`, this.unit("speed")), friction().axis], (sets, which, axes) => {
+        const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAtSpeed(this.core, sets, this.view.friction);
+        return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))} of the input`, text(at, this.unit("torque"))]] };
+      }, { measure: "friction at speed", takes: true, slot: () => `friction of ${this.view.friction.place}`, fits: () => [frictionPart(this.view.friction.place)].filter(Boolean), controls: () => [this.choice(["friction", "place"], PLACES, "place of the friction"), ...this.numberControls("friction", [["maxSpeed", "input up to", "speed"], ["load", "input load", "torque"], ["temperature", "temperature [K]", ""]])], residual: (measured) => {
         const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
-      card("angle", "Friction over a turn", () => [axis("input angle", degrees), axis("friction at the input", this.unit("torque"))], (sets, which, axes) => {
+      card("angle", "Friction over a turn", () => [axis(`${friction().shaft} angle`, degrees), friction().axis], (sets, which, axes) => {
         const curve = frictionOverAngle(this.core, sets, this.view.friction), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("torque"))]] };
-      }, { controls: () => this.numberControls("friction", [["speed", "at", "speed"]]) }),
+      }, { controls: () => this.numberControls("friction", [["speed", "input at", "speed"]]) }),
       card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
-        const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
-        return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("angle"))]] };
-      }),
+        const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)], isRandom = curve.random.some(Boolean), { rms } = rmsOf(curve.random, new Float64Array(curve.random.length));
+        const repeating = isRandom && which === "one" ? [this.scaled({ x: curve.x, y: curve.repeating }, axes, { colour: "--data", dash: true })] : [];
+        return { curves: [this.scaled(curve, axes, look(which)), ...repeating],
+          numbers: [["peak to peak", text(high - low, this.unit("angle"))], ...(isRandom ? [["random part, RMS of this turn", text(rms, this.unit("angle"))]] : []), ...(repeating.length ? [["grey dashes:", "without it"]] : [])] };
+      }, { measure: "kinematic error" }),
       card("orders", "Orders of the error", () => [{ label: "periods a turn of the input", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
         const curve = ordersOf(turnError(sets)), most = Math.max(...curve.y);
         return { curves: [this.scaled({ x: [...curve.x, NaN], y: [...curve.y, 0] }, axes, { ...look(which), mark: "bar" })],
@@ -232,10 +251,11 @@ class Workbench {
       const canvas = element("div", { className: "canvas", role: "img" });
       card.at = element("small", { className: "at" });
       card.numbers = element("p", { className: "numbers" });
+      card.strongest = element("p", { className: "strongest" });
       card.bar = element("div", { className: "controls" });
       const save = [this.button("CSV", () => this.saveCsv(card)), this.button("PNG", async () => this.download(`${card.key}.png`, await card.plot.png())), this.button("SVG", () => this.download(`${card.key}.svg`, card.plot.svg(card.title)))];
       if (card.takes) save.unshift(this.button("Data…", () => this.askMeasured(card)));
-      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h2", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers);
+      card.element = element("article", { className: "plot", id: card.key }, element("div", { className: "bar" }, element("h2", {}, card.title), element("div", { className: "controls" }, ...save)), card.bar, canvas, card.numbers, card.strongest);
       canvas.append(card.at);
       if (card.takes) {
         card.element.ondragover = (event) => { event.preventDefault(); card.element.classList.add("over"); };
@@ -299,28 +319,46 @@ class Workbench {
     return {
       "loop width": (sets) => numbersOfLoop(loopOf(this.core, sets, this.view.travel)).width,
       "mean stiffness": (sets) => numbersOfLoop(loopOf(this.core, sets, this.view.travel)).stiffness,
-      "friction at speed": (sets) => frictionAt(this.core, sets, [this.view.friction.speed], [this.view.friction.angle], this.view.friction)[0],
+      "friction at speed": (sets) => frictionAtSpeed(this.core, sets, this.view.friction),
       "kinematic error": (sets) => { const { y } = errorOverTurn(this.core, sets); return Math.max(...y) - Math.min(...y); },
     };
   }
   /** Beside each number of the gear: the change of the chosen measure if it grows by 10 %. */
   showEffects() {
-    const measure = this.measures[this.view.effect], { gear } = this.sets;
-    let now = NaN;
-    try { now = measure(this.sets); } catch { /* said where it is drawn */ }
-    gear.paths.forEach((path, i) => {
-      const row = this.form.rows.get(["gear", ...keysOf(path)].join("."));
-      if (!row) return;
-      let change = NaN;
-      if (gear.numbers[i] !== 0 && now !== 0) {
-        const numbers = [...gear.numbers];
-        numbers[i] *= EFFECT;
-        try { change = measure({ gear: { ...gear, numbers } }) / now - 1; } catch { /* 10 % more is not allowed */ }
-      }
-      const shown = Math.abs(change) > 5e-5;
-      row.effect.textContent = shown ? `${change > 0 ? "+" : "−"}${shortText(Math.abs(100 * change), 2)} %` : "";
+    const changes = this.effects();
+    for (const row of this.form.rows.values()) {
+      const change = changes.get(row.path.join("."))?.[this.view.effect], shown = Math.abs(change) > MIN_EFFECT;
+      row.effect.textContent = shown ? changeText(change) : "";
       row.effect.classList.toggle("strong", shown && Math.abs(change) > 0.02);
+    }
+    for (const card of this.cards) if (card.measure) this.showStrongest(card, changes);
+  }
+  /** Relative change of every measure if a number of the gear grows by 10 %, by the path of its row; NaN if there is none. */
+  effects() {
+    const { drive } = this.state, { gear } = this.sets, measures = Object.entries(this.measures);
+    const valueOf = (measure, sets) => { try { return measure(sets); } catch { return NaN; } }; // the plot says why
+    const now = measures.map(([, measure]) => valueOf(measure, this.sets)), changes = new Map();
+    gear.paths.forEach((path, i) => {
+      const keys = ["gear", ...keysOf(path)];
+      if (gear.numbers[i] === 0 || gear.fields[i].kind === "count") return;
+      const sets = setsOf(this.schema, replaced(drive, keys, gear.numbers[i] * EFFECT));
+      changes.set(keys.join("."), Object.fromEntries(measures.map(([name, measure], k) => [name, now[k] === 0 ? NaN : valueOf(measure, sets) / now[k] - 1])));
     });
+    return changes;
+  }
+  /** Below a plot: the numbers that change its reading most. */
+  showStrongest(card, changes) {
+    const strong = [...changes].map(([key, of]) => ({ row: this.form.rows.get(key), change: of[card.measure] })).filter(({ row, change }) => row && Math.abs(change) > MIN_EFFECT)
+      .sort((one, other) => Math.abs(other.change) - Math.abs(one.change)).slice(0, MAX_STRONGEST);
+    const named = strong.flatMap(({ row, change }, i) => [i ? ", " : "", this.button(row.label, () => this.goTo(row, card.measure)), ` ${changeText(change)}`]);
+    card.strongest.replaceChildren(...(strong.length ? [`${card.measure} changes most with 10 % more of: `, ...named] : []));
+  }
+  /** Shows the row of a number, and the effects on a measure. */
+  goTo(row, measure) {
+    this.setView(["effect"], measure);
+    by("effect").value = measure;
+    row.made.closest("details:not(.help)")?.setAttribute("open", "");
+    row.input.focus();
   }
   // ---- Measured data -------------------------------------------------------------------------------------------------
   askMeasured(card) {
@@ -329,25 +367,27 @@ class Workbench {
   }
   takeMeasured(card, text) {
     try {
-      if (text.trim() === "") delete this.measured[card.key];
+      if (text.trim() === "") delete this.measured[card.slot()];
       else {
         const [across, up] = card.axes(), { x, y, skipped } = twoColumns(text, MAX_MEASURED);
         this.say(`${x.length} points read${skipped ? `, ${skipped} ${skipped > 1 ? "rows" : "row"} skipped` : ""}`);
-        this.measured[card.key] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
+        this.measured[card.slot()] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
       }
       this.draw();
     } catch (error) { this.say(`measured data: ${error.message}`, true); }
   }
   /** Fits the numbers of the parts that a plot shows to its measured data. */
   fit(card) {
-    const { x, y } = this.measured[card.key], { gear } = this.sets, begin = performance.now();
-    const places = gear.paths.flatMap((path, i) => (card.fits.includes(path.split(".")[0]) && ["number", "sequence"].includes(gear.fields[i].kind) ? [i] : []));
-    const filled = (value) => new Float64Array(x.length).fill(value), { angle, load, temperature } = this.view.friction;
-    const [verb, points] = card.key === "loop" ? ["loop_slopes", x] : ["friction", [x, filled(angle), filled(load), filled(temperature)]];
+    const { x, y } = this.measured[card.slot()], begin = performance.now(), [part] = card.fits(), isLoop = card.key === "loop";
+    const gear = isLoop ? this.sets.gear : this.sets.gearWithInputFriction(part), parts = isLoop ? card.fits() : ["friction_input"];
+    const places = gear.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) && ["number", "sequence"].includes(gear.fields[i].kind) ? [i] : []));
+    const filled = (value) => new Float64Array(x.length).fill(value), { place, angle, load, temperature } = this.view.friction;
+    const [verb, points] = isLoop ? ["loop_slopes", x] : ["friction", [x, filled(angle), filled(load * turnsAt(this.core, this.sets, place)), filled(temperature)]];
     try {
       const found = fitted((numbers, free) => this.core.slopes(verb, { ...gear, numbers }, points, free), gear.numbers, gear.fields, places, y);
       let { drive } = this.state;
-      places.forEach((place) => { drive = replaced(drive, ["gear", ...keysOf(gear.paths[place])], found.numbers[place]); });
+      const own = (path) => (isLoop ? path : path.replace("friction_input", part));
+      places.forEach((each) => { drive = replaced(drive, ["gear", ...keysOf(own(gear.paths[each]))], found.numbers[each]); });
       this.change({ ...this.state, drive }, true, true);
       this.say(`${found.free} numbers fitted in ${found.iterations} iterations and ${Math.round(performance.now() - begin)} ms; strainwave identify gives their standard deviations`);
     } catch (error) { this.say(`the fit failed: ${error.message}`, true); }
@@ -385,8 +425,8 @@ class Workbench {
       `twist = np.concatenate([[0.0], *(np.linspace(a, b, ${PER_STRETCH + 1})[1:] for a, b in zip(ends, ends[1:]))])`,
       "torque = gear.trace(twist)  # N.m", "",
       `speed = np.linspace(${floatText(friction.maxSpeed / 200)}, ${floatText(friction.maxSpeed)}, 200)  # rad/s`,
-      `friction = gear.friction_input.steady(speed, load=${floatText(friction.load)}, temperature=${floatText(friction.temperature)})  # N.m`,
-      `angle = np.linspace(0.0, 2.0 * np.pi, ${TURN_POINTS + 1})`, "error = gear.kinematic_error.error(angle)  # rad", "",
+      ...frictionPython(friction),
+      `angle = np.linspace(0.0, 2.0 * np.pi, ${TURN_POINTS + 1})`, "error = gear.kinematic_error.error(angle) + gear.kinematic_noise.error(angle)  # rad", "",
       `drive = ${pythonOf(this.schema, "Drive", drive, "", { gear: "gear" })}`,
       `command = sw.scenario.${run.command === "sine" ? "sine" : "step"}(amplitude=${floatText(run.amplitude)}, ${run.command === "sine" ? `frequency=${floatText(run.frequency)}, ` : ""}duration=${floatText(run.duration)})`,
       `run = sw.simulate(drive, command${run.load ? `, load_torque=${floatText(run.load)}` : ""})`, `run[${JSON.stringify(run.shown.replaceAll(" ", "_"))}]`, "",
