@@ -6,14 +6,14 @@ const { gunzipSync } = require("node:zlib");
 const { runInThisContext } = require("node:vm");
 
 const [scripts, page] = process.argv.slice(2);
-runInThisContext(`${["model", "core", "curves", "fit", "plots", "form", "page"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
+runInThisContext(`${["model", "toml", "gearfile", "core", "curves", "fit", "plots", "form", "page"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
 const bytesOf = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64");
 
 const TASKS = {
   /** Laws, whole numbers, numbers and paths of drives, and texts of their gears. */
   flatten: ({ schema, drives }) => drives.map((given) => {
     const drive = completed(schema, "Drive", given), parts = flattened(schema, "Drive", drive);
-    return { ...parts, fields: undefined, numbers: bytesOf(parts.numbers), values: drive, python: pythonOf(schema, "Drive", drive), toml: gearToml(schema, "made", drive, ["motor", "control", "load", "sensors", "thermal", "meter"], () => "a test") };
+    return { ...parts, fields: undefined, numbers: bytesOf(parts.numbers), values: drive, python: pythonOf(schema, "Drive", drive), toml: gearToml(schema, { name: "made" }, drive, ["motor", "control", "load", "sensors", "thermal", "meter"], () => ["a test", null, null]) };
   }),
   refuse: ({ schema, given }) => given.map((each) => { try { completed(schema, "Drive", each); return ""; } catch (error) { return error.message; } }),
   link: async ({ data, texts }) => [await fromFragment(await toFragment(data)), ...(await Promise.all(texts.map((text) => fromFragment(text).catch((error) => String(error.message)))))],
@@ -22,6 +22,14 @@ const TASKS = {
     const view = viewFrom(schema, each);
     return [view, Workbench.prototype.python.call({ schema, view, state: { drive: completed(schema, "Drive", drive) } })];
   }),
+  /** What the page reads of the texts of gear files: name, drive on a default one, entries, ratings and covariance; or why not. */
+  read: ({ schema, texts }) => texts.map((text) => {
+    try {
+      const { name, drive, ...given } = gearFromToml(schema, text), origin = originFrom(schema, { ...given, drive });
+      return { name, drive: origin.drive, ...portable(origin) };
+    } catch (error) { return error.message; }
+  }),
+  toml: ({ texts }) => texts.map((text) => { try { return [fromToml(text)]; } catch (error) { return error.message; } }),
   /** gear.toml of drives that follow on a gear of the page. */
   export: ({ schema, start, catalogue, key, drives }) => drives.map((given) => {
     const workbench = Object.assign(Object.create(Workbench.prototype), { schema, start, catalogue });

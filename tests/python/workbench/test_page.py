@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import pytest
 import strainwave as sw
+from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.workbench.page import FILE, MISSING, page
 
@@ -165,7 +166,11 @@ def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
     assert "from assumed numbers" in shown["loop"]
     assert "motor, controller and load are assumed" in shown["run"]
     tab.locator("#catalogue").select_option("hfuc-25-100")
-    assert row.get_attribute("title") == "Source: assumed: catalogue HFUC-25-100"
+    entry = GearSet.read("hfuc-25-100").sources["gear.hysteresis.breakaway[0]"]
+    assert row.get_attribute("title") == f"Source: {entry.source}"
+    assert "single gears scatter by ± 30 %" in tab.locator(
+        ".row", has=tab.locator("#field-gear\\.stiffness\\.k1")
+    ).get_attribute("title")
     assert "rated torque" not in tab.locator("#loop").text_content()
     tab.locator("#undo").click()
     assert "30 % of rated torque" in tab.locator("#loop").text_content()
@@ -287,6 +292,79 @@ def test_a_random_part_of_the_error_is_drawn_and_stated(tab: Any) -> None:
     rms = float(re.search(r"RMS of this turn ([\d.]+)", readings(tab)["error"])[1])
     assert 0.03 < rms < 0.3
     assert number(readings(tab), "error") > 0.45
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_gear_file_is_opened_with_its_sources_and_its_link_keeps_them(tab: Any, browser: Any, tmp_path: Path) -> None:
+    known = GearSet.read("hfuc-25-100")
+    measured = Entry("identified from loop.csv", uncertainty=300.0)
+    load = sw.loads.Inertia(inertia=0.5)
+    mine = known.replace(name="mine", sources=dict(known.sources) | {"gear.stiffness.k1": measured})
+    mine.with_parts(load=load, source="weighed").save(tmp_path / "mine.toml")
+    tab.locator("#file").set_input_files(tmp_path / "mine.toml")
+    tab.wait_for_function("document.getElementById('name').value === 'mine'")
+    assert tab.locator("#status").text_content() == "mine.toml read; motor and controller as before, because the file has none"
+    row = tab.locator(".row", has=tab.locator("#field-gear\\.stiffness\\.k1"))
+    assert row.locator(".mark").text_content().startswith("identified ± ")
+    assert "motor and controller are assumed" in readings(tab)["run"]
+    other = browser.new_page()
+    other.goto(tab.evaluate("location.href"))
+    other.wait_for_function("document.getElementById('name').value === 'mine'")
+    with other.expect_download() as loaded:
+        other.locator("#toml").click()
+    loaded.value.save_as(tmp_path / "again.toml")
+    again = GearSet.read(tmp_path / "again.toml")
+    assert (again.gear, again.load, again.motor) == (known.gear, load, None)
+    assert again.sources["gear.stiffness.k1"] == measured
+    assert again.sources["gear.stiffness.k2"] == known.sources["gear.stiffness.k2"]
+    other.close()
+    tab.locator("#undo").click()
+    assert tab.locator("#name").input_value() == "CSG-20-100"
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_wrong_or_hostile_file_is_refused_in_a_sentence(tab: Any, tmp_path: Path) -> None:
+    def status_of(content: bytes) -> str:
+        (tmp_path / "wrong.toml").write_bytes(content)
+        tab.locator("#status").evaluate("each => { each.textContent = ''; }")
+        tab.locator("#file").set_input_files(tmp_path / "wrong.toml")
+        tab.wait_for_function("document.getElementById('status').textContent")
+        return str(tab.locator("#status").text_content())
+
+    before = readings(tab)
+    assert status_of(b"\x89PNG\xff\xfe\x00") == "wrong.toml cannot be read as a gear file: line 1: a key expected"
+    assert "larger than a gear file" in status_of(b"#" * (2**21 + 1))
+    good = Path(tmp_path / "good.toml")
+    GearSet.read("csg-20-100").save(good)
+    text = good.read_text()
+    assert "k1: the unit furlong is not known" in status_of(text.replace("N.m/rad", "furlong", 1).encode())
+    assert readings(tab) == before
+    evil = "<img src=x onerror=alert(1)>"
+    given = text.replace("CSG-20-100", evil).replace("Harmonic Drive AG catalogue", evil)
+    assert status_of(given.encode()).startswith("wrong.toml read; ")
+    assert tab.locator("#name").input_value() == evil
+    assert tab.locator("main img").count() == 0
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_dropped_file_is_a_gear_or_measured_data_of_a_plot(tab: Any) -> None:
+    drop = """([where, name, content]) => {
+        const data = new DataTransfer();
+        data.items.add(new File([content], name));
+        const event = new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true });
+        document.querySelector(where).dispatchEvent(event);
+    }"""
+    tab.evaluate(drop, ["#loop canvas", "loop.csv", "0,0\n1,5\n2,11\n"])
+    tab.locator("#loop .measured").wait_for()
+    assert "of 3 points" in readings(tab)["loop"]
+    tab.evaluate(drop, ["#loop canvas", "gear.toml", 'name = "x"\n[stiffnes]\n'])
+    tab.locator("#status.bad").wait_for()
+    assert tab.locator("#status").text_content() == "gear.toml cannot be read as a gear file: stiffnes: no part of a gear file"
+    tab.evaluate(drop, ["#form", "loop.csv", "0,0\n1,5\n"])
+    tab.wait_for_function("document.getElementById('status').textContent.startsWith('loop.csv')")
 
 
 @needs_page

@@ -24,9 +24,9 @@ const select = (options, value, properties = {}) => {
 };
 
 class Form {
-  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `sourceOf(path)` its source. */
-  constructor(root, schema, unitOf, get, set, sourceOf) {
-    Object.assign(this, { root, schema, unitOf, get, set, sourceOf, rows: new Map(), open: new Set(), used: new Set() });
+  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `entryOf(path)` the entry of a number. */
+  constructor(root, schema, unitOf, get, set, entryOf) {
+    Object.assign(this, { root, schema, unitOf, get, set, entryOf, rows: new Map(), open: new Set(), used: new Set() });
   }
   /** Anew: a law, a length or a unit is another. */
   build() {
@@ -152,9 +152,10 @@ class Form {
     this.showSource(row);
   }
   showSource({ path, mark, source, made, factor }) {
-    const { source: text, sigma } = this.sourceOf(path);
-    mark.textContent = sigma !== undefined ? `identified ± ${shortText(sigma / factor, 2)}` : text.startsWith("assumed") ? "assumed" : "";
-    made.title = source.textContent = `Source: ${text}`;
+    const [text, spread, sigma] = this.entryOf(path), deviation = sigma !== null && shortText(sigma / factor, 2);
+    mark.textContent = deviation && text.startsWith("identified") ? `identified ± ${deviation}` : text.startsWith("assumed") ? "assumed" : "";
+    const more = [spread !== null && `single gears scatter by ± ${shortText(100 * spread, 2)} %`, deviation && `standard deviation ${deviation}`].filter(Boolean);
+    made.title = source.textContent = [`Source: ${text}`, ...more].join("; ");
   }
   refreshAll() { for (const row of this.rows.values()) if (row.input === document.activeElement) this.showSource(row); else this.refresh(row); }
 }

@@ -4,6 +4,7 @@ const MAX_UNDO = 200;
 const SLOW_RUN = 14; // ms: a run that takes longer waits until the hand rests
 const REST = 120; // ms
 const MAX_MEASURED = 20000; // points
+const TRAVEL_SHARE = 0.3; // of the rated torque: travel of the loop of a gear from a file
 const EFFECT = 1.1; // factor of a number whose effect is shown
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
 const MAX_STRONGEST = 4; // numbers below a plot
@@ -37,10 +38,11 @@ function viewFrom(schema, given, like = VIEW) {
 }
 
 /** A name of one line, of whole characters. */
-const nameFrom = (text) => text.slice(0, 80).toWellFormed().replace(/[\p{Cc}\p{Zl}\p{Zp}]/gu, " ");
+const nameFrom = (text) => lineFrom(text.slice(0, 80));
 /** A relative change in percent, as "+3.3 %". */
 const changeText = (change) => `${change > 0 ? "+" : "−"}${shortText(Math.abs(100 * change), 2)}\u00a0%`;
-const sentence = (names) => `${[names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ")} ${names.length > 1 ? "are" : "is"} assumed`;
+const listed = (names) => [names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ");
+const sentence = (names) => `${listed(names)} ${names.length > 1 ? "are" : "is"} assumed`;
 
 /** A function of the sets of a drive whose result several plots of one frame share. */
 function sharedByPlots(of) {
@@ -70,20 +72,25 @@ class Workbench {
   // ---- State ---------------------------------------------------------------------------------------------------------
   get view() { return this.state.view; }
   /** Where the numbers of a state come from: of a gear that the page contains, else nothing. It goes with the state through Undo. */
-  origin(key, gear) {
-    const { sources = {}, sigmas = {}, rated = null, parts = [] } = gear ?? {};
-    return { key, sources, sigmas, rated, parts, drive: gear ? completed(this.schema, "Drive", gear.drive) : null };
-  }
+  origin(key, gear) { return gear ? { key, ...originFrom(this.schema, gear) } : { key, drive: null, sources: new Map(), ratings: new Map(), parts: [], rated: null }; }
+  /** That of a link: the key of a gear of the page, or what the link contains of a gear from a file. */
   originOfLink(key) {
+    if (isTable(key)) return this.origin(null, key);
     if (key === this.start.name) return this.origin(key, this.start);
     return this.origin(key, typeof key === "string" && Object.hasOwn(this.catalogue, key) ? this.catalogue[key] : null);
   }
-  /** Source of the number at these keys, and its standard deviation if identified. A sequence has its source as a whole. */
-  sourceOf(keys) {
+  /** Source, spread and standard deviation of the number at these keys. A sequence keeps them as a whole. */
+  entryOf(keys) {
     const { drive, origin } = this.state, whole = keys.filter((key) => typeof key === "string"), name = whole.join(".");
-    if (!origin.drive || !sameValues(valueAt(drive, whole), valueAt(origin.drive, whole))) return { source: "set in the workbench" };
+    if (!origin.drive || !sameValues(valueAt(drive, whole), valueAt(origin.drive, whole))) return ["set in the workbench", null, null];
     const path = keys.length > whole.length ? `${name}[${keys.at(-1)}]` : name;
-    return { source: origin.sources[path] ?? origin.sources[`${name}[0]`] ?? (keys[0] === "gear" ? "not given" : "assumed by the workbench"), sigma: origin.sigmas[path] };
+    return origin.sources.get(path) ?? [keys[0] === "gear" || origin.parts.includes(keys[0]) ? "not given" : "assumed by the workbench", null, null];
+  }
+  /** The covariance of the numbers that are as they were, among the parts of a file; null if there is none. */
+  covarianceOf(parts) {
+    const { numbers, matrix } = this.state.origin.covariance ?? { numbers: [] }, { sources } = this.state.origin;
+    const kept = numbers.flatMap((path, i) => { const keys = keysOf(path); return ["gear", ...parts].includes(keys[0]) && sources.has(path) && this.entryOf(keys) === sources.get(path) ? [i] : []; });
+    return kept.length ? { numbers: kept.map((i) => numbers[i]), matrix: kept.map((i) => kept.map((k) => matrix[i][k])) } : null;
   }
   /** The parts of the drive as the page assumes them. */
   assumedParts() {
@@ -244,7 +251,7 @@ class Workbench {
     ];
   }
   /** True if a number of a part of the gear is assumed. */
-  assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.sourceOf(path).source.startsWith("assumed")); }
+  assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.entryOf(path)[0].startsWith("assumed")); }
   buildCards() {
     this.cards = this.makeCards();
     by("plots").replaceChildren(...this.cards.map((card) => {
@@ -260,7 +267,14 @@ class Workbench {
       if (card.takes) {
         card.element.ondragover = (event) => { event.preventDefault(); card.element.classList.add("over"); };
         card.element.ondragleave = () => card.element.classList.remove("over");
-        card.element.ondrop = async (event) => { event.preventDefault(); card.element.classList.remove("over"); if (event.dataTransfer.files[0]) this.takeMeasured(card, await event.dataTransfer.files[0].slice(0, 1 << 23).text()); };
+        card.element.ondrop = async (event) => {
+          card.element.classList.remove("over");
+          const [file] = event.dataTransfer.files;
+          if (!file || file.name.endsWith(".toml")) return; // the page opens it
+          event.preventDefault();
+          event.stopPropagation();
+          this.takeMeasured(card, await file.slice(0, 1 << 23).text());
+        };
       }
       return card.element;
     }));
@@ -393,6 +407,22 @@ class Workbench {
     } catch (error) { this.say(`the fit failed: ${error.message}`, true); }
   }
   // ---- Texts and files -----------------------------------------------------------------------------------------------
+  /** Shows the gear of a file; parts of the drive that it lacks stay those shown. */
+  async openFile(file) {
+    try {
+      if (file.size > MAX_FILE) throw new Error("larger than a gear file");
+      this.openToml(await file.text());
+      const kept = this.assumedParts();
+      this.say(`${file.name} read${kept.length ? `; ${listed(kept)} as before, because the file has none` : ""}`);
+    } catch (error) { this.say(`${file.name} cannot be read as a gear file: ${error.message}`, true); }
+  }
+  openToml(text) {
+    const { name, drive: parts, ...given } = gearFromToml(this.schema, text), drive = { ...this.state.drive, ...parts };
+    const origin = this.origin(null, { ...given, drive }), { rated } = origin, { travel } = this.view;
+    const wanted = rated ? { by: "torque", torque: TRAVEL_SHARE * rated } : { by: "twist", twist: VIEW.travel.twist };
+    this.change({ name: nameFrom(name), drive: origin.drive, view: { ...this.view, travel: { ...travel, ...wanted } }, origin }, true);
+    this.showAll();
+  }
   ask(title, content, use, hint = "") {
     by("text-title").textContent = title;
     Object.assign(by("text-content"), { value: content, placeholder: hint, readOnly: !use });
@@ -413,7 +443,8 @@ class Workbench {
   toml() {
     const { name, drive, origin } = this.state;
     const parts = Object.keys(drive).filter((part) => part !== "gear" && (origin.parts.includes(part) || !origin.drive || !sameValues(drive[part], origin.drive[part])));
-    return gearToml(this.schema, name || "gear", drive, parts, (path) => this.sourceOf(path.split(".")).source);
+    const { maker, note, ratings } = origin, head = { name: name.trim() || "gear", maker, note, ratings, covariance: this.covarianceOf(parts) };
+    return gearToml(this.schema, head, drive, parts, (keys) => this.entryOf(keys));
   }
   python() {
     const { travel, friction, run } = this.view, { drive } = this.state;
@@ -434,7 +465,7 @@ class Workbench {
   }
   async remember() {
     const { name, drive, view, origin } = this.state;
-    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view, origin: origin.key }))}`);
+    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view, origin: origin.drive && origin.key === null ? portable(origin) : origin.key }))}`);
   }
   async open(fragment) {
     const given = await fromFragment(fragment);
@@ -444,7 +475,7 @@ class Workbench {
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
     this.say("");
-    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.sourceOf(path));
+    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.entryOf(path));
     by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
@@ -458,6 +489,10 @@ class Workbench {
       this.change({ name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
       this.showAll();
     };
+    by("open").onclick = () => by("file").click();
+    by("file").onchange = () => { const [file] = by("file").files; by("file").value = ""; if (file) this.openFile(file); };
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => { event.preventDefault(); const [file] = event.dataTransfer.files; if (file) this.openFile(file); });
     by("undo").onclick = () => this.travelBack(this.past, this.future);
     by("redo").onclick = () => this.travelBack(this.future, this.past);
     by("keep").onclick = () => { const { name, drive, origin } = this.state; this.other = { name: name || "kept", drive, origin }; this.draw(); };
