@@ -303,14 +303,16 @@ def test_a_gear_file_is_opened_with_its_sources_and_its_link_keeps_them(tab: Any
     mine = known.replace(name="mine", sources=dict(known.sources) | {"gear.stiffness.k1": measured})
     mine.with_parts(load=load, source="weighed").save(tmp_path / "mine.toml")
     tab.locator("#file").set_input_files(tmp_path / "mine.toml")
-    tab.wait_for_function("document.getElementById('name').value === 'mine'")
+    tab.locator("#status", has_text="mine.toml").wait_for()
     assert tab.locator("#status").text_content() == "mine.toml read; motor and controller as before, because the file has none"
     row = tab.locator(".row", has=tab.locator("#field-gear\\.stiffness\\.k1"))
     assert row.locator(".mark").text_content().startswith("identified ± ")
     assert "motor and controller are assumed" in readings(tab)["run"]
     other = browser.new_page()
     other.goto(tab.evaluate("location.href"))
-    other.wait_for_function("document.getElementById('name').value === 'mine'")
+    other.locator(".numbers b").nth(10).wait_for()
+    readings(other)
+    assert other.locator("#name").input_value() == "mine"
     with other.expect_download() as loaded:
         other.locator("#toml").click()
     loaded.value.save_as(tmp_path / "again.toml")
@@ -330,7 +332,7 @@ def test_a_wrong_or_hostile_file_is_refused_in_a_sentence(tab: Any, tmp_path: Pa
         (tmp_path / "wrong.toml").write_bytes(content)
         tab.locator("#status").evaluate("each => { each.textContent = ''; }")
         tab.locator("#file").set_input_files(tmp_path / "wrong.toml")
-        tab.wait_for_function("document.getElementById('status').textContent")
+        tab.locator("#status", has_text="wrong.toml").wait_for()
         return str(tab.locator("#status").text_content())
 
     before = readings(tab)
@@ -364,7 +366,7 @@ def test_a_dropped_file_is_a_gear_or_measured_data_of_a_plot(tab: Any) -> None:
     tab.locator("#status.bad").wait_for()
     assert tab.locator("#status").text_content() == "gear.toml cannot be read as a gear file: stiffnes: no part of a gear file"
     tab.evaluate(drop, ["#form", "loop.csv", "0,0\n1,5\n"])
-    tab.wait_for_function("document.getElementById('status').textContent.startsWith('loop.csv')")
+    tab.locator("#status", has_text="loop.csv cannot be read as a gear file").wait_for()
 
 
 @needs_page
