@@ -39,6 +39,12 @@ const TASKS = {
   /** Why a fit of measured values is refused, without a core. */
   refuse_fit: ({ numbers, measured }) => { try { fitted(() => null, numbers, numbers.map(() => ({})), numbers.map((_, i) => i), measured); } catch (error) { return error.message; } },
   svg: ({ plot }) => svgOf(plot),
+  points: ({ given }) => given.map((each) => Object.entries(pointsFrom(each)).map(([slot, { x, y }]) => [slot, [...x], [...y]])),
+  /** The fragment of points, as many as given, and what a link leaves out. */
+  linked: async ({ counts }) => Promise.all(counts.map((count) => {
+    const x = Float64Array.from({ length: count }, (_, i) => Math.sin(1e4 * i)), y = x.map((value) => Math.tan(5e4 * value)), workbench = Object.create(Workbench.prototype);
+    return Object.assign(workbench, { measured: { loop: { x, y } }, state: { name: "", drive: {}, view: {}, origin: { key: null, drive: null } } }).linked();
+  })),
   columns: ({ texts }) => texts.map((text) => { try { const { x, y, skipped } = twoColumns(text, 5); return [[...x], [...y], skipped]; } catch (error) { return error.message; } }),
   /** Loop, friction, error, spring and a run of each drive; null if a verb does not end with finite numbers. */
   compute: async ({ schema, drives, twist, speed, angle, load, temperature, instants, inputs, recorded }, core) => drives.map((given) => {

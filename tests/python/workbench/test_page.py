@@ -234,7 +234,11 @@ def test_measured_data_are_drawn_and_compared(tab: Any) -> None:
     field.press("Enter")
     assert "RMS residual 0.01 N·m" not in readings(tab)["friction"]
     tab.get_by_role("button", name="Fit").click()
-    assert "RMS residual 0.01 N·m of 198 points" in readings(tab)["friction"]
+    shown = readings(tab)
+    assert "RMS residual 0.01 N·m of 198 points" in shown["friction"]
+    tab.reload()
+    tab.locator("#friction .measured").wait_for()
+    assert readings(tab)["friction"] == shown["friction"]
 
 
 @needs_page

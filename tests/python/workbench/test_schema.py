@@ -213,6 +213,34 @@ def test_a_plot_as_svg_has_its_points_where_its_axes_have_them() -> None:
 
 
 @needs_node
+def test_a_link_has_measured_points_up_to_a_length() -> None:
+    few, many = in_node("linked", counts=[3000, 3001])
+    assert few["left"] == []
+    assert 30_000 < len(few["fragment"]) <= 60_000
+    assert many["left"] == ["the measured data"]
+    assert len(many["fragment"]) < 1000
+
+
+@needs_node
+def test_measured_points_of_a_link_are_numbers_of_a_plot_that_takes_them() -> None:
+    good = [[0, 1, 2.5], [3, 4, -5e-3]]
+    given: list[Any] = [
+        {"loop": good, "friction of mesh": good, "error": good, "__proto__": good},
+        {"loop": [[0, 1], [1]]},
+        {"loop": [[0, "1"], [1, 2]]},
+        {"loop": [[0, None], [1, 2]]},
+        {"loop": [[0] * 3001] * 2},
+        {"loop": "text"},
+        [good],
+        None,
+        3,
+    ]
+    found = in_node("points", given=given)
+    assert found[0] == [["loop", *good], ["friction of mesh", *good]]
+    assert found[1:] == [[]] * (len(given) - 1)
+
+
+@needs_node
 def test_columns_of_measurements_are_read() -> None:
     texts = {
         "a,b\n1,2\n3,-4e1\n": [[1, 3], [2, -40], 1],

@@ -136,10 +136,12 @@ async function through(bytes, stream, limit) {
 const toBase64 = (bytes) => btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
 const fromBase64 = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** Any data as the fragment of a link: JSON, deflated, base64url. */
+/** Any data as the fragment of a link: JSON, deflated, base64url; null if that is longer than a link may be. */
 async function toFragment(data) {
-  const bytes = await through(new TextEncoder().encode(JSON.stringify(data)), new CompressionStream("deflate-raw"), MAX_INFLATED);
-  return toBase64(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  const plain = new TextEncoder().encode(JSON.stringify(data));
+  if (plain.length > MAX_INFLATED) return null;
+  const text = toBase64(await through(plain, new CompressionStream("deflate-raw"), 2 * MAX_INFLATED)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return text.length > MAX_FRAGMENT ? null : text;
 }
 async function fromFragment(text) {
   if (text.length > MAX_FRAGMENT || !/^[\w-]*$/.test(text)) throw new Error("the link is too long or not whole");

@@ -4,6 +4,8 @@ const MAX_UNDO = 200;
 const SLOW_RUN = 14; // ms: a run that takes longer waits until the hand rests
 const REST = 120; // ms
 const MAX_MEASURED = 20000; // points
+const MAX_LINKED = 3000; // points of all plots in a link
+const LINKED_DIGITS = 7; // of a measured number in a link
 const TRAVEL_SHARE = 0.3; // of the rated torque: travel of the loop of a gear from a file
 const EFFECT = 1.1; // factor of a number whose effect is shown
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
@@ -23,6 +25,7 @@ const VIEW = {
 };
 
 const EFFECTS = ["loop width", "mean stiffness", "friction at speed", "kinematic error"];
+const SLOTS = ["loop", ...PLACES.map((place) => `friction of ${place}`)]; // of measured data
 const POSITIVE = ["duration", "frequency", "maxSpeed", "temperature"]; // numbers of a view
 
 /** A view from a link: finite numbers, and texts that their menus have; the rest is as in VIEW. */
@@ -34,6 +37,21 @@ function viewFrom(schema, given, like = VIEW) {
     const other = given && Object.hasOwn(given, key) ? given[key] : undefined;
     if (typeof value === "object") return [key, viewFrom(schema, other, value)];
     return [key, typeof other === typeof value && allowed(key, other) ? other : value];
+  }));
+}
+
+/** Measured points by plot as a link contains them; null if there are too many. */
+function linkedPoints(measured) {
+  const rounded = (values) => Array.from(values, (value) => Number(value.toPrecision(LINKED_DIGITS)));
+  const count = Object.values(measured).reduce((sum, { x }) => sum + x.length, 0);
+  return count > MAX_LINKED ? null : Object.fromEntries(Object.entries(measured).map(([slot, { x, y }]) => [slot, [rounded(x), rounded(y)]]));
+}
+/** Measured points by plot from a link: columns of finite numbers, as long, of plots that take them. */
+function pointsFrom(given) {
+  const isColumn = (values) => Array.isArray(values) && values.length > 1 && values.length <= MAX_LINKED && values.every(Number.isFinite);
+  return Object.fromEntries(SLOTS.flatMap((slot) => {
+    const [x, y] = given && Object.hasOwn(given, slot) && Array.isArray(given[slot]) ? given[slot] : [];
+    return isColumn(x) && isColumn(y) && x.length === y.length ? [[slot, { x: Float64Array.from(x), y: Float64Array.from(y) }]] : [];
   }));
 }
 
@@ -463,12 +481,27 @@ class Workbench {
       `run = sw.simulate(drive, command${run.load ? `, load_torque=${floatText(run.load)}` : ""})`, `run[${JSON.stringify(run.shown.replaceAll(" ", "_"))}]`, "",
     ].join("\n");
   }
+  /** The fragment of a link to what is shown, and what it leaves out because that is too long for a link. */
+  async linked() {
+    const { name, drive, view, origin } = this.state, left = [];
+    let data = { name, drive, view, origin: origin.key }, fragment = await toFragment(data);
+    const more = { "the sources of the opened file": origin.drive && origin.key === null && { origin: portable(origin) }, "the measured data": Object.keys(this.measured).length && { measured: linkedPoints(this.measured) } };
+    for (const [what, added] of Object.entries(more)) {
+      if (!added) continue;
+      const longer = added.measured === null ? null : await toFragment({ ...data, ...added });
+      if (longer === null) left.push(what);
+      else { fragment = longer; data = { ...data, ...added }; }
+    }
+    return { fragment, left };
+  }
   async remember() {
-    const { name, drive, view, origin } = this.state;
-    history.replaceState(null, "", `#${(this.fragment = await toFragment({ name, drive, view, origin: origin.drive && origin.key === null ? portable(origin) : origin.key }))}`);
+    const { state } = this, { fragment, left } = await this.linked();
+    if (state === this.state) history.replaceState(null, "", `#${(this.fragment = fragment)}`);
+    return left;
   }
   async open(fragment) {
     const given = await fromFragment(fragment);
+    this.measured = pointsFrom(given.measured);
     this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), origin: this.originOfLink(given.origin) }, true);
     this.showAll();
   }
@@ -499,8 +532,8 @@ class Workbench {
     by("forget").onclick = () => { this.other = null; this.draw(); };
     by("swap").onclick = () => { const { name, drive, origin } = this.state, { other } = this; this.other = { name: name || "kept", drive, origin }; this.change({ ...this.state, ...other }, true); this.showAll(); };
     by("link").onclick = async () => {
-      await this.remember();
-      try { await navigator.clipboard.writeText(location.href); this.say("link copied"); } catch { this.ask("Link", location.href); }
+      const left = await this.remember(), without = left.length ? `, without ${listed(left)}: too long for a link` : "";
+      try { await navigator.clipboard.writeText(location.href); this.say(`link copied${without}`); } catch { this.ask(`Link${without}`, location.href); }
     };
     by("toml").onclick = () => this.download("gear.toml", this.toml());
     by("python").onclick = () => this.ask("Python that computes these curves", this.python());
