@@ -64,8 +64,8 @@ const TASKS = {
   fit: ({ schema, drives, x, y, parts }, core) => drives.map((given) => {
     const { gear } = setsOf(schema, completed(schema, "Drive", given));
     const places = gear.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) ? [i] : []));
-    const begin = performance.now(), found = fitted((numbers, free) => core.slopes("loop_slopes", { ...gear, numbers }, x, free), gear.numbers, gear.fields, places, y);
-    return { rms: found.rms, iterations: found.iterations, numbers: places.map((place) => found.numbers[place]), seconds: 1e-3 * (performance.now() - begin) };
+    const begin = performance.now(), found = fittedLoop(core, gear, places, new LoopRecord(Float64Array.from(x), Float64Array.from(y)));
+    return { zeros: found.zeros, rms: found.rms, correlation: found.correlation, kept: found.kept, iterations: found.iterations, numbers: places.map((place) => found.numbers[place]), seconds: 1e-3 * (performance.now() - begin) };
   }),
   /** Friction of a drive over speeds of the input or of the place, at each place. */
   places: ({ schema, drive, speed, angle, view }, core) => {

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.files.entries import Entry
@@ -371,6 +372,32 @@ def test_a_dropped_file_is_a_gear_or_measured_data_of_a_plot(tab: Any) -> None:
     assert tab.locator("#status").text_content() == "gear.toml cannot be read as a gear file: stiffnes: no part of a gear file"
     tab.evaluate(drop, ["#form", "loop.csv", "0,0\n1,5\n"])
     tab.locator("#status", has_text="loop.csv cannot be read as a gear file").wait_for()
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_measured_loop_is_drawn_from_the_zeros_that_its_fit_finds(tab: Any) -> None:
+    gear = sw.load("csg-20-100")
+    twist = 1e-3 * np.concatenate([np.linspace(1.0, -1.0, 100), np.linspace(-1.0, 1.0, 100)])
+    torque = gear.trace(np.concatenate([[0.0], twist, twist]))[-200:] + 0.02 * (-1.0) ** np.arange(200)
+    arcmin = 10800.0 / np.pi
+    tab.locator("#loop").get_by_role("button", name="Data…").click()
+    points = zip((twist + 2e-4) * arcmin, torque + 1.0, strict=True)
+    tab.locator("#text-content").fill("\n".join(f"{x} {y}" for x, y in points))
+    tab.locator("#text-use").click()
+    field = tab.locator("#field-gear\\.stiffness\\.k1")
+    field.fill(str(1.1 * float(field.input_value())))
+    field.press("Enter")
+    assert float(re.search(r"RMS residual ([\d.]+)", readings(tab)["loop"])[1]) > 1.0
+    tab.get_by_role("button", name="Fit").click()
+    assert "numbers fitted in" in tab.locator("#status").text_content()
+    shown = readings(tab)["loop"]
+    assert "RMS residual 0.02" in shown
+    assert float(re.search(r"zeros: torque ([\d.]+)", shown)[1]) == pytest.approx(1.0, abs=0.02)
+    assert float(re.search(r"twist ([\d.]+) arcmin", shown)[1]) == pytest.approx(2e-4 * arcmin, abs=0.01)
+    assert float(tab.locator("#loop .controls input").input_value()) == pytest.approx(1e-3 * arcmin, rel=1e-2)  # the travel
+    tab.locator("#undo").click()
+    assert "zeros" not in readings(tab)["loop"]
 
 
 @needs_page

@@ -3,10 +3,11 @@
 const MAX_UNDO = 200;
 const SLOW_RUN = 14; // ms: a run that takes longer waits until the hand rests
 const REST = 120; // ms
-const MAX_MEASURED = 20000; // points
+const MAX_MEASURED = 16000; // points: a loop goes through them twice, within the capacity of the core
 const MAX_LINKED = 3000; // points of all plots in a link
 const LINKED_DIGITS = 7; // of a measured number in a link
 const TRAVEL_SHARE = 0.3; // of the rated torque: travel of the loop of a gear from a file
+const MAX_CORRELATION = 0.5; // of each residual with the one before: beyond it, a fit is doubted
 const EFFECT = 1.1; // factor of a number whose effect is shown
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
 const MAX_STRONGEST = 4; // numbers below a plot
@@ -46,6 +47,7 @@ function linkedPoints(measured) {
   const count = Object.values(measured).reduce((sum, { x }) => sum + x.length, 0);
   return count > MAX_LINKED ? null : Object.fromEntries(Object.entries(measured).map(([slot, { x, y }]) => [slot, [rounded(x), rounded(y)]]));
 }
+const zerosFrom = (given) => (Array.isArray(given) && given.length === 2 && given.every(Number.isFinite) ? given : null);
 /** Measured points by plot from a link: columns of finite numbers, as long, of plots that take them. */
 function pointsFrom(given) {
   const isColumn = (values) => Array.isArray(values) && values.length > 1 && values.length <= MAX_LINKED && values.every(Number.isFinite);
@@ -54,6 +56,9 @@ function pointsFrom(given) {
     return isColumn(x) && isColumn(y) && x.length === y.length ? [[slot, { x: Float64Array.from(x), y: Float64Array.from(y) }]] : [];
   }));
 }
+
+/** Places of the numbers of these parts in a set, but for whole ones. */
+const placesOf = (set, parts) => set.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) && ["number", "sequence"].includes(set.fields[i].kind) ? [i] : []));
 
 /** A name of one line, of whole characters. */
 const nameFrom = (text) => lineFrom(text.slice(0, 80));
@@ -84,7 +89,7 @@ class Workbench {
   constructor(core, schema, catalogue, start) {
     Object.assign(this, { core, schema, catalogue, start, past: [], future: [], measured: {}, other: null, });
     const origin = this.origin(start.name, start);
-    this.state = { name: start.name, drive: origin.drive, view: viewFrom(schema, { travel: start.travel }), origin };
+    this.state = { name: start.name, drive: origin.drive, view: viewFrom(schema, { travel: start.travel }), origin, zeros: null };
     this.saved = this.state;
   }
   // ---- State ---------------------------------------------------------------------------------------------------------
@@ -191,7 +196,7 @@ class Workbench {
       card.pieces = pieces;
       const measured = card.takes && this.measured[card.slot()];
       const curves = pieces.flatMap(({ curves }) => curves).reverse();
-      if (measured) curves.unshift({ x: measured.x.map((value) => value / card.axes()[0].factor), y: measured.y.map((value) => value / card.axes()[1].factor), colour: "--data", mark: "point" });
+      if (measured) curves.unshift(this.scaled(this.behindZeros(card, measured), card.axes(), { colour: "--data", mark: "point" }));
       card.plot.show(card.axes().map(({ label }) => label), curves);
       const read = pieces.map(({ numbers }, i) => element("span", { className: i ? "other" : "" }, i ? `${this.other.name}: ` : "", ...numbers.flatMap(([label, text], k) => [`${k ? ", " : ""}${label} `, element("b", {}, text)])));
       if (measured) read.push(element("span", { className: "measured" }, "measured: ", element("b", {}, card.residual(measured)), " "), ...(card.fits().length ? [this.button("Fit", () => this.fit(card))] : []));
@@ -204,6 +209,11 @@ class Workbench {
       card.plot.show(card.axes().map(({ label }) => label), []);
       return error.message;
     }
+  }
+  /** The measured points of a plot from the zeros that a fit found. */
+  behindZeros(card, { x, y }) {
+    const [torqueZero, twistZero] = (card.key === "loop" && this.state.zeros) || [0, 0];
+    return { x: x.map((value) => value - twistZero), y: y.map((value) => value - torqueZero) };
   }
   scaled(curve, axes, more) {
     const scale = (list, { factor }) => Float64Array.from(list, (value) => value / factor);
@@ -229,9 +239,10 @@ class Workbench {
         const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
         return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
           numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`], ...(which === "one" && this.assumes("hysteresis") ? [["from assumed numbers", ""]] : [])] };
-      }, { measure: "loop width", takes: true, slot: () => "loop", fits: () => ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: (measured) => {
-        const { rms, count } = rmsOf(this.core.slopes("loop_slopes", this.sets.gear, measured.x, []).values, measured.y);
-        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
+      }, { measure: "loop width", takes: true, slot: () => "loop", fits: () => ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: ({ x, y }) => {
+        const { zeros } = this.state, record = new LoopRecord(x, y, zeros ?? [0, 0]), { rms, count } = rmsOf(record.predicted(this.core, this.sets.gear, [], record.zeros).values, y);
+        const found = zeros && record.isLoop ? `; its zeros: torque ${text(zeros[0], this.unit("torque"))}, twist ${text(zeros[1], this.unit("angle"))}` : "";
+        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points${found}`;
       } }),
       card("stiffness", "Stiffness over torque", () => [axis("torque", this.unit("torque")), axis("stiffness", perAngle())], (sets, which, axes) => {
         const loop = turnLoop(sets), slopes = slopesOfLoop(loop), top = slopes.y.filter(Number.isFinite);
@@ -405,24 +416,41 @@ class Workbench {
         this.say(`${x.length} points read${skipped ? `, ${skipped} ${skipped > 1 ? "rows" : "row"} skipped` : ""}`);
         this.measured[card.slot()] = { x: x.map((value) => value * across.factor), y: y.map((value) => value * up.factor) };
       }
+      if (card.key === "loop") this.change({ ...this.state, zeros: null, view: this.measuredView(null) }, true);
+      this.buildControls();
       this.draw();
     } catch (error) { this.say(`measured data: ${error.message}`, true); }
   }
+  /** The view with the travel of the measured loop, from its zeros; as it is without such a loop. */
+  measuredView(zeros) {
+    const { loop } = this.measured, [, twistZero] = zeros ?? [0, 0];
+    const wanted = loop && { by: "twist", twist: Math.max(...loop.x.map((value) => Math.abs(value - twistZero))) };
+    return { ...this.view, travel: { ...this.view.travel, ...wanted } };
+  }
   /** Fits the numbers of the parts that a plot shows to its measured data. */
   fit(card) {
-    const { x, y } = this.measured[card.slot()], begin = performance.now(), [part] = card.fits(), isLoop = card.key === "loop";
-    const gear = isLoop ? this.sets.gear : this.sets.gearWithInputFriction(part), parts = isLoop ? card.fits() : ["friction_input"];
-    const places = gear.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) && ["number", "sequence"].includes(gear.fields[i].kind) ? [i] : []));
-    const filled = (value) => new Float64Array(x.length).fill(value), { place, angle, load, temperature } = this.view.friction;
-    const [verb, points] = isLoop ? ["loop_slopes", x] : ["friction", [x, filled(angle), filled(load * turnsAt(this.core, this.sets, place)), filled(temperature)]];
+    const measured = this.measured[card.slot()], begin = performance.now();
     try {
-      const found = fitted((numbers, free) => this.core.slopes(verb, { ...gear, numbers }, points, free), gear.numbers, gear.fields, places, y);
+      const { numbers, places, pathOf, ...found } = card.key === "loop" ? this.fitLoop(measured) : this.fitFriction(measured, card.fits()[0]);
       let { drive } = this.state;
-      const own = (path) => (isLoop ? path : path.replace("friction_input", part));
-      places.forEach((each) => { drive = replaced(drive, ["gear", ...keysOf(own(gear.paths[each]))], found.numbers[each]); });
-      this.change({ ...this.state, drive }, true, true);
-      this.say(`${found.free} numbers fitted in ${found.iterations} iterations and ${Math.round(performance.now() - begin)} ms; strainwave identify gives their standard deviations`);
+      for (const place of places) drive = replaced(drive, ["gear", ...keysOf(pathOf(place))], numbers[place]);
+      const view = found.zeros && this.view.travel.by === "twist" ? this.measuredView(found.zeros) : this.view;
+      this.change({ ...this.state, drive, view, zeros: found.zeros ?? this.state.zeros }, true, true);
+      const count = found.free.filter((place) => places.includes(place)).length, kept = found.kept ? `; ${found.kept} without influence stay` : "";
+      const doubt = found.correlation > MAX_CORRELATION ? "the residuals follow one another: another law, or another start, fits better" : "strainwave identify gives their standard deviations";
+      this.say(`${count} numbers fitted in ${found.iterations} iterations and ${Math.round(performance.now() - begin)} ms${kept}; ${doubt}`);
     } catch (error) { this.say(`the fit failed: ${error.message}`, true); }
+  }
+  fitLoop({ x, y }) {
+    const { gear } = this.sets, places = placesOf(gear, ["stiffness", "hysteresis"]), record = new LoopRecord(x, y, this.state.zeros);
+    const found = fittedLoop(this.core, gear, places, record);
+    return { ...found, zeros: record.isLoop ? found.zeros : null, places, pathOf: (place) => gear.paths[place] };
+  }
+  fitFriction({ x, y }, part) {
+    const gear = this.sets.gearWithInputFriction(part), places = placesOf(gear, ["friction_input"]), { place, angle, load, temperature } = this.view.friction;
+    const points = [x, ...[angle, load * turnsAt(this.core, this.sets, place), temperature].map((value) => new Float64Array(x.length).fill(value))];
+    const found = fitted((numbers, free) => this.core.slopes("friction", { ...gear, numbers }, points, free), gear.numbers, gear.fields, places, y);
+    return { ...found, places, pathOf: (each) => gear.paths[each].replace("friction_input", part) };
   }
   // ---- Texts and files -----------------------------------------------------------------------------------------------
   /** Shows the gear of a file; parts of the drive that it lacks stay those shown. */
@@ -438,7 +466,7 @@ class Workbench {
     const { name, drive: parts, ...given } = gearFromToml(this.schema, text), drive = { ...this.state.drive, ...parts };
     const origin = this.origin(null, { ...given, drive }), { rated } = origin, { travel } = this.view;
     const wanted = rated ? { by: "torque", torque: TRAVEL_SHARE * rated } : { by: "twist", twist: VIEW.travel.twist };
-    this.change({ name: nameFrom(name), drive: origin.drive, view: { ...this.view, travel: { ...travel, ...wanted } }, origin }, true);
+    this.change({ ...this.state, name: nameFrom(name), drive: origin.drive, view: { ...this.view, travel: { ...travel, ...wanted } }, origin }, true);
     this.showAll();
   }
   ask(title, content, use, hint = "") {
@@ -483,8 +511,8 @@ class Workbench {
   }
   /** The fragment of a link to what is shown, and what it leaves out because that is too long for a link. */
   async linked() {
-    const { name, drive, view, origin } = this.state, left = [];
-    let data = { name, drive, view, origin: origin.key }, fragment = await toFragment(data);
+    const { name, drive, view, origin, zeros } = this.state, left = [];
+    let data = { name, drive, view, zeros, origin: origin.key }, fragment = await toFragment(data);
     const more = { "the sources of the opened file": origin.drive && origin.key === null && { origin: portable(origin) }, "the measured data": Object.keys(this.measured).length && { measured: linkedPoints(this.measured) } };
     for (const [what, added] of Object.entries(more)) {
       if (!added) continue;
@@ -502,7 +530,7 @@ class Workbench {
   async open(fragment) {
     const given = await fromFragment(fragment);
     this.measured = pointsFrom(given.measured);
-    this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), origin: this.originOfLink(given.origin) }, true);
+    this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), zeros: zerosFrom(given.zeros), origin: this.originOfLink(given.origin) }, true);
     this.showAll();
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
@@ -519,7 +547,7 @@ class Workbench {
       by("catalogue").value = "";
       if (!chosen) return;
       const origin = this.origin(key, chosen);
-      this.change({ name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
+      this.change({ ...this.state, name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
       this.showAll();
     };
     by("open").onclick = () => by("file").click();
