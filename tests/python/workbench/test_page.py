@@ -183,6 +183,10 @@ def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
 def test_fields_take_numbers_alone_and_show_them_whole(tab: Any) -> None:
     amplitude = tab.locator("#run .controls label", has_text="amplitude")
     assert amplitude.text_content().strip() == "amplitude  arcmin"
+    assert "amplitude = 0.1 rad" in tab.locator("#run .controls").nth(1).text_content()
+    amplitude.locator("input").fill("0.05 rad")
+    amplitude.locator("input").press("Enter")
+    assert tab.evaluate("workbench.then(each => each.view.run.amplitude)") == 0.05
     assert "grey dashes: command" in readings(tab)["run"]
     field = tab.locator("#field-gear\\.stiffness\\.k1")
     before = field.input_value()
@@ -248,13 +252,38 @@ def test_the_numbers_that_change_a_reading_most_stand_below_it(tab: Any) -> None
     assert readings(tab)["loop"].startswith("loop width 0.5 arcmin")
     strongest = tab.locator("#loop .strongest")
     shown = strongest.text_content().replace("\u00a0", " ")
-    assert shown.startswith("loop width changes most with 10 % more of: stiffness k1 −9.1 %, hysteresis breakaway 1 +3.3 %, ")
+    assert shown.startswith("10 % more: loop width grows with hysteresis breakaway 1 +3.3 %, hysteresis breakaway 2 +3.3 %, ")
+    assert shown.endswith("; falls with stiffness k1 −9.1 %")
     strongest.get_by_role("button", name="hysteresis breakaway 1").click()
     assert tab.evaluate("document.activeElement.id") == "field-gear.hysteresis.breakaway.0"
     field = tab.locator("#field-gear\\.hysteresis\\.breakaway\\.0")
     field.fill(str(1.1 * float(field.input_value())))
     field.press("Enter")
     assert number(readings(tab), "loop") == pytest.approx(0.5 * 1.033, rel=1e-3)
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_the_help_of_a_number_shows_what_twice_as_much_changes(tab: Any) -> None:
+    shown = {
+        "gear.hysteresis.breakaway.0": "torque over twist: solid now, dashed with twice as much",
+        "gear.stiffness.k3": "torque over twist: the same with twice as much",  # beyond the travel
+        "gear.friction_input.viscous": "friction over speed: solid now, dashed with twice as much",
+        "gear.kinematic_error.order.0": "kinematic error over a turn: solid now, dashed with twice as much",
+        "gear.damping": "output angle over time: solid now, dashed with twice as much",
+    }
+    for path, words in shown.items():
+        field = tab.locator(f"#field-{path.replace('.', chr(92) + '.')}")
+        field.focus()
+        picture = tab.locator(".row:focus-within .picture")
+        assert picture.locator("svg").get_attribute("aria-label").endswith(words)
+        now, more = (path.get_attribute("d") for path in picture.locator("path").all())
+        assert (now == more) == ("the same" in words)
+    tab.locator("#field-gear\\.friction_input\\.viscous").focus()
+    tab.locator(".row:focus-within .picture button").click()
+    equation = tab.locator("fieldset", has=tab.locator("#law-gear\\.friction_input")).locator("details.help")
+    assert equation.locator("math").first.is_visible()
+    assert tab.locator(".row:focus-within .picture svg").is_visible()
 
 
 @needs_page

@@ -249,23 +249,24 @@ class Workbench {
         return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
       }, { measure: "mean stiffness" }),
       card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
+        const unit = this.unit(output()[1]), [si] = Object.keys(this.schema.units[output()[1]]), both = (value) => `${text(value, unit)}${unit.factor === 1 ? "" : ` = ${shortText(value)} ${si.replace(".", "·")}`}`;
         const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
         const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
         const hasCommand = which === "one" && { "output angle": "rad", "output speed": "rad/s" }[this.view.run.shown] === this.commandUnit();
         if (hasCommand) curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", text(last, this.unit(output()[1]))], ["largest", text(peak, this.unit(output()[1]))], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
+        return { curves, numbers: [["at the end", both(last)], ["largest", both(peak)], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
       }, { slow: true, controls: () => this.runControls() }),
       card("friction", "Friction over speed", () => [axis(`${friction().shaft} speed`, this.unit("speed")), friction().axis], (sets, which, axes) => {
         const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAtSpeed(this.core, sets, this.view.friction);
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))} of the input`, text(at, this.unit("torque"))]] };
-      }, { measure: "friction at speed", takes: true, slot: () => `friction of ${this.view.friction.place}`, fits: () => [frictionPart(this.view.friction.place)].filter(Boolean), controls: () => [this.choice(["friction", "place"], PLACES, "place of the friction"), ...this.numberControls("friction", [["maxSpeed", "input up to", "speed"], ["load", "input load", "torque"], ["temperature", "temperature [K]", ""]])], residual: (measured) => {
+      }, { measure: "friction at speed", takes: true, slot: () => `friction of ${this.view.friction.place}`, fits: () => [frictionPart(this.view.friction.place)].filter(Boolean), controls: () => [this.choice(["friction", "place"], PLACES, "place of the friction"), ...this.numberControls("friction", [["maxSpeed", "input up to", "rad/s"], ["load", "input load", "N.m"], ["temperature", "temperature [K]", ""]])], residual: (measured) => {
         const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
         return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
       } }),
       card("angle", "Friction over a turn", () => [axis(`${friction().shaft} angle`, degrees), friction().axis], (sets, which, axes) => {
         const curve = frictionOverAngle(this.core, sets, this.view.friction), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
         return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("torque"))]] };
-      }, { controls: () => this.numberControls("friction", [["speed", "input at", "speed"]]) }),
+      }, { controls: () => this.numberControls("friction", [["speed", "input at", "rad/s"]]) }),
       card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
         const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)], isRandom = curve.random.some(Boolean), { rms } = rmsOf(curve.random, new Float64Array(curve.random.length));
         const repeating = isRandom && which === "one" ? [this.scaled({ x: curve.x, y: curve.repeating }, axes, { colour: "--data", dash: true })] : [];
@@ -327,11 +328,11 @@ class Workbench {
     return menu;
   }
   numberControls(group, rows) {
-    return rows.map(([name, label, of, unit]) => {
-      const { factor, text } = unit ?? (of ? this.unit(of) : { factor: 1, text: "" });
+    return rows.map(([name, label, unit]) => {
+      const { factor, text } = this.unitOf(unit);
       const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
       input.onchange = () => {
-        const value = numberOf(input.value) * factor;
+        const value = numberOf(input.value, factor, this.schema.symbols, unit);
         const wrong = !Number.isFinite(value) ? "is no number" : POSITIVE.includes(name) && value <= 0 ? "must be above 0" : "";
         if (wrong) this.say(`${label}: ${input.value} ${wrong}`, true);
         else this.setView([group, name], value);
@@ -340,7 +341,7 @@ class Workbench {
     });
   }
   travelControls() {
-    const wanted = this.view.travel.by === "torque" ? ["torque", "±", "torque"] : ["twist", "±", "angle"];
+    const wanted = this.view.travel.by === "torque" ? ["torque", "±", "N.m"] : ["twist", "±", "rad"];
     const made = [this.choice(["travel", "history"], Object.keys(HISTORIES), "history of the twist"), this.choice(["travel", "by"], ["torque", "twist"], "travel given by"), ...this.numberControls("travel", [wanted])];
     const { rated } = this.state.origin;
     if (rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque`);
@@ -353,9 +354,9 @@ class Workbench {
     return of(control.law?.model ? control.law : control) ?? of(motor);
   }
   runControls() {
-    const { command } = this.view.run;
-    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", "", this.unitOf(this.commandUnit())], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
-      this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
+    const { command, amplitude } = this.view.run, unit = this.commandUnit(), { factor } = this.unitOf(unit);
+    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", unit], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
+      ...(factor === 1 ? [] : [`amplitude = ${shortText(amplitude)} ${unit}`]), this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
   }
   // ---- Effects -------------------------------------------------------------------------------------------------------
   get measures() {
@@ -393,8 +394,9 @@ class Workbench {
   showStrongest(card, changes) {
     const strong = [...changes].map(([key, of]) => ({ row: this.form.rows.get(key), change: of[card.measure] })).filter(({ row, change }) => row && Math.abs(change) > MIN_EFFECT)
       .sort((one, other) => Math.abs(other.change) - Math.abs(one.change)).slice(0, MAX_STRONGEST);
-    const named = strong.flatMap(({ row, change }, i) => [i ? ", " : "", this.button(row.label, () => this.goTo(row, card.measure)), ` ${changeText(change)}`]);
-    card.strongest.replaceChildren(...(strong.length ? [`${card.measure} changes most with 10 % more of: `, ...named] : []));
+    const named = (words, group) => (group.length ? [words, ...group.flatMap(({ row, change }, i) => [i ? ", " : "", this.button(row.label, () => this.goTo(row, card.measure)), ` ${changeText(change)}`])] : []);
+    const grows = named("grows with ", strong.filter(({ change }) => change > 0)), falls = named("falls with ", strong.filter(({ change }) => change < 0));
+    card.strongest.replaceChildren(...(strong.length ? [`10 % more: ${card.measure} `, ...grows, ...(grows.length && falls.length ? ["; "] : []), ...falls] : []));
   }
   /** Shows the row of a number, and the effects on a measure. */
   goTo(row, measure) {
@@ -402,6 +404,37 @@ class Workbench {
     by("effect").value = measure;
     row.made.closest("details:not(.help)")?.setAttribute("open", "");
     row.input.focus();
+  }
+  /** In the help of a number: the curve that it changes most, now and with twice as much, or half where that is too much. */
+  explain(row) {
+    const { path, field, label, picture } = row, now = valueAt(this.state.drive, path);
+    if (picture.contains(document.activeElement)) return;
+    const equation = this.button("equation and validity", () => { const help = row.made.closest("fieldset").querySelector("details.help"); if (help) { help.open = true; help.scrollIntoView({ block: "nearest" }); } });
+    picture.replaceChildren(equation);
+    if (field.kind === "whole" || field.kind === "count" || !now) return;
+    const [amount, found] = [["twice", 2], ["half", 0.5]].map(([word, factor]) => [word, this.changedCurve(path, factor * now)]).find(([, each]) => each) ?? [];
+    if (!found) return;
+    const { title, curves } = found, isSame = sameValues([...curves[0].y], [...curves[1].y]), words = `${title}: ${isSame ? `the same with ${amount} as much` : `solid now, dashed with ${amount} as much`}`;
+    picture.prepend(smallPicture(`${label}. ${words}`, curves), element("div", {}, words));
+  }
+  /** The curve that changes most if the number at these keys becomes another, before and after; null if none can be drawn. */
+  changedCurve(path, value) {
+    const before = setsOf(this.schema, this.state.drive), after = setsOf(this.schema, replaced(this.state.drive, path, value));
+    const drawn = this.curvesOf(path).flatMap(([title, of]) => {
+      try {
+        const curves = [{ ...of(before), look: "now" }, { ...of(after), look: "more" }], { rms } = rmsOf(curves[0].y, curves[1].y);
+        return [{ title, curves, change: rms / rmsOf(curves[0].y, new Float64Array(curves[0].y.length)).rms || 0 }];
+      } catch { return []; } // not allowed, or beyond what a law can do
+    });
+    return drawn.sort((one, other) => other.change - one.change)[0] ?? null;
+  }
+  /** The curves that show a number of the gear or drive, by their titles. */
+  curvesOf([root, part]) {
+    const { core, view } = this, place = PLACES.find((each) => frictionPart(each) === part), ofLoop = (sets) => loopOf(core, sets, view.travel);
+    if (place) return [["friction over speed", (sets) => frictionOverSpeed(core, sets, { ...view.friction, place })], ["friction over a turn", (sets) => frictionOverAngle(core, sets, { ...view.friction, place })]];
+    if (root === "gear" && part.startsWith("kinematic_")) return [["kinematic error over a turn", (sets) => errorOverTurn(core, sets)]];
+    if (part === "stiffness" || part === "hysteresis") return [["torque over twist", (sets) => { const { twist, torque } = ofLoop(sets); return { x: twist, y: torque }; }]];
+    return [[`${view.run.shown} over time`, (sets) => { const { time, output } = runOf(core, sets, view.run, OUTPUTS[view.run.shown][0]); return { x: time, y: output }; }]];
   }
   // ---- Measured data -------------------------------------------------------------------------------------------------
   askMeasured(card) {
@@ -536,7 +569,7 @@ class Workbench {
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
     this.say("");
-    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.entryOf(path));
+    this.form = new Form(by("fields"), this.schema, (unit) => this.unitOf(unit), () => this.state.drive, (...change) => this.setDrive(...change), (path) => this.entryOf(path), (row) => this.explain(row));
     by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);

@@ -20,6 +20,35 @@ function rangeOf(lists) {
   return [low - around, high + around];
 }
 
+/** The data of an SVG path through the finite points of a curve, by functions to the places of x and y. */
+function pathText({ x, y, mark }, toX, toY) {
+  let path = "", pen = "M";
+  for (let i = 0; i < x.length; i++) {
+    if (!Number.isFinite(x[i] + y[i])) { pen = "M"; continue; }
+    const px = toX(x[i]), py = toY(y[i]);
+    if (mark === "point") path += `M${px - 1} ${py - 1}h2v2h-2z`;
+    else if (mark === "bar") path += `M${px} ${toY(0)}V${py}`;
+    else path += `${pen}${px} ${py}`;
+    pen = "L";
+  }
+  return path;
+}
+
+const SMALL = { width: 240, height: 72 }; // of a small picture
+/** A small picture of curves without axes, which all fill it together; the style sheet draws each by its class. */
+function smallPicture(label, curves) {
+  const make = (tag, attributes) => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    return made;
+  };
+  const [xLow, xHigh] = rangeOf(curves.map(({ x }) => x)), [yLow, yHigh] = rangeOf(curves.map(({ y }) => y)), short = (value) => Number(value.toFixed(1));
+  const toX = (x) => short(((x - xLow) / (xHigh - xLow)) * SMALL.width), toY = (y) => short(((yHigh - y) / (yHigh - yLow)) * SMALL.height);
+  const picture = make("svg", { viewBox: `0 0 ${SMALL.width} ${SMALL.height}`, preserveAspectRatio: "none", role: "img", "aria-label": label });
+  for (const curve of curves) picture.append(make("path", { d: pathText(curve, toX, toY), class: curve.look, "vector-effect": "non-scaling-stroke" }));
+  return picture;
+}
+
 const escaped = (text) => text.replace(/[&<>"]/g, (letter) => `&#${letter.charCodeAt(0)};`);
 
 /**
@@ -32,21 +61,9 @@ function svgOf({ title, width, height, frame, axes, curves, colours }) {
   const toY = (y) => short(top + ((up.max - y) / (up.max - up.min)) * frame.height);
   const line = (x1, y1, x2, y2) => `<path d="M${x1} ${y1}L${x2} ${y2}" stroke="${colours.grid}"/>`;
   const text = (x, y, content, more = "") => `<text x="${x}" y="${y}" ${more}>${escaped(content)}</text>`;
-  const pathOf = ({ x, y, mark }) => {
-    let path = "", pen = "M";
-    for (let i = 0; i < x.length; i++) {
-      if (!Number.isFinite(x[i] + y[i])) { pen = "M"; continue; }
-      const px = toX(x[i]), py = toY(y[i]);
-      if (mark === "point") path += `M${px - 1} ${py - 1}h2v2h-2z`;
-      else if (mark === "bar") path += `M${px} ${toY(0)}V${py}`;
-      else path += `${pen}${px} ${py}`;
-      pen = "L";
-    }
-    return path;
-  };
   const drawn = curves.map((curve) => {
     const look = curve.mark === "point" ? `fill="${curve.colour}"` : `fill="none" stroke="${curve.colour}" stroke-width="${curve.mark !== "bar" ? 1.7 : curve.dash ? 2 : 5}"${curve.dash ? ' stroke-dasharray="6 4"' : ""}`;
-    return `<path d="${pathOf(curve)}" ${look}/>`;
+    return `<path d="${pathText(curve, toX, toY)}" ${look}/>`;
   });
   const middle = top + frame.height / 2;
   return [
