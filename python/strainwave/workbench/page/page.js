@@ -355,8 +355,8 @@ class Workbench {
   }
   runControls() {
     const { command, amplitude } = this.view.run, unit = this.commandUnit(), { factor } = this.unitOf(unit);
-    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", unit], ...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
-      ...(factor === 1 ? [] : [`amplitude = ${shortText(amplitude)} ${unit}`]), this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
+    return [this.choice(["run", "command"], ["step", "sine"], "command"), ...this.numberControls("run", [["amplitude", "amplitude", unit]]), ...(factor === 1 ? [] : [`= ${shortText(amplitude)} ${unit}`]), ...this.numberControls("run", [...(command === "sine" ? [["frequency", "frequency [Hz]", ""]] : []), ["duration", "duration [s]", ""]]),
+      this.choice(["run", "shown"], Object.keys(OUTPUTS), "output shown")];
   }
   // ---- Effects -------------------------------------------------------------------------------------------------------
   get measures() {
@@ -394,9 +394,9 @@ class Workbench {
   showStrongest(card, changes) {
     const strong = [...changes].map(([key, of]) => ({ row: this.form.rows.get(key), change: of[card.measure] })).filter(({ row, change }) => row && Math.abs(change) > MIN_EFFECT)
       .sort((one, other) => Math.abs(other.change) - Math.abs(one.change)).slice(0, MAX_STRONGEST);
-    const named = (words, group) => (group.length ? [words, ...group.flatMap(({ row, change }, i) => [i ? ", " : "", this.button(row.label, () => this.goTo(row, card.measure)), ` ${changeText(change)}`])] : []);
-    const grows = named("grows with ", strong.filter(({ change }) => change > 0)), falls = named("falls with ", strong.filter(({ change }) => change < 0));
-    card.strongest.replaceChildren(...(strong.length ? [`10 % more: ${card.measure} `, ...grows, ...(grows.length && falls.length ? ["; "] : []), ...falls] : []));
+    const named = (words, group) => (group.length ? [words, ...group.flatMap(({ row, change }, i) => [i ? ", " : "", this.button(row.label, () => this.goTo(row, card.measure)), ` (${changeText(change)})`])] : []);
+    const grows = named(" grows with ", strong.filter(({ change }) => change > 0)), falls = named(`${grows.length ? ";" : ""} falls with `, strong.filter(({ change }) => change < 0));
+    card.strongest.replaceChildren(...(strong.length ? [card.measure, ...grows, ...falls, ", for 10 % more of each"] : []));
   }
   /** Shows the row of a number, and the effects on a measure. */
   goTo(row, measure) {
