@@ -29,6 +29,7 @@ const TASKS = {
       return { name, drive: origin.drive, ...portable(origin) };
     } catch (error) { return error.message; }
   }),
+  origin: ({ schema, given }) => given.map((each) => { try { return portable(originFrom(schema, each)); } catch (error) { return error.message; } }),
   toml: ({ texts }) => texts.map((text) => { try { return [fromToml(text)]; } catch (error) { return error.message; } }),
   /** gear.toml of drives that follow on a gear of the page. */
   export: ({ schema, start, catalogue, key, drives }) => drives.map((given) => {

@@ -452,3 +452,32 @@ def test_what_is_nested_or_long_is_refused_at_once() -> None:
     begun = perf_counter()
     assert all(isinstance(found, str) for found in in_node("toml", texts=texts))
     assert perf_counter() - begun < 5.0
+
+
+@needs_node
+def test_an_origin_of_a_link_has_nothing_that_cannot_be_written(tmp_path: Path) -> None:
+    drive = changed(drive_around(GearSet.read("csg-20-100")))
+    entry = ["line\none\u00a0\ud800", -1.0, "text"]
+    wrong = {
+        "drive": drive,
+        "maker": ["x"],
+        "note": "a\u007f\u0000b\nc",
+        "parts": ["motor", "gear", "__proto__", 3],
+        "sources": {"gear.damping": entry, "gear.stiffness.k1": None, "__proto__": ["x"]},
+        "ratings": {
+            "rated_torque": [5.0, "kgf.m", "a"],
+            'a"b': [1.0, "N.m", "a"],
+            "b": ["1", "N.m", "a"],
+            "c": [1.0, ["N.m"], "a"],
+            "d": [1.0, "furlong", "a"],
+        },
+        "covariance": {"numbers": ['a"', "b"], "matrix": [[1.0, 0.0], [0.0, 1.0]]},
+    }
+    found, refused, none = in_node("origin", schema=schema(), given=[wrong, {"drive": {"gear": {"damping": "1"}}}, {}])
+    assert refused == "Gear.damping: a finite number expected"
+    assert none == "Drive: parameters expected"
+    assert (found["maker"], found["note"], found["parts"], found["covariance"]) == ("", "a  b\nc", ["motor"], None)
+    assert found["sources"]["gear.damping"] == ["line one \ufffd", None, None]
+    assert found["sources"]["gear.stiffness.k1"] == ["not given", None, None]
+    assert found["ratings"] == {"rated_torque": [5.0, "kgf.m", "a", None, None]}
+    assert found["rated"] == pytest.approx(49.03325)

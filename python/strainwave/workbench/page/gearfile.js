@@ -130,7 +130,7 @@ function originFrom(schema, given) {
   const rated = ratings.get("rated_torque"), isTorque = rated && measureOf(schema.symbols, rated[1]).dimension === measureOf(schema.symbols, "N.m").dimension;
   return {
     maker: text(given.maker), note: typeof given.note === "string" ? given.note.toWellFormed().replace(/[^\P{Cc}\n\t]/gu, " ") : "",
-    drive: completed(schema, "Drive", given.drive), parts: schema.models.Drive.fields.map(({ name }) => name).filter((name) => given.parts?.includes?.(name)),
+    drive: completed(schema, "Drive", given.drive), parts: schema.models.Drive.fields.map(({ name }) => name).filter((name) => name !== "gear" && given.parts?.includes?.(name)),
     sources: new Map(table(given.sources).map(([path, value]) => [path, entry(value)])), ratings, covariance: covarianceFrom(given.covariance),
     rated: isTorque ? rated[0] * factorBetween(schema.symbols, rated[1], "N.m") : null,
   };

@@ -9,6 +9,7 @@ const LINKED_DIGITS = 7; // of a measured number in a link
 const TRAVEL_SHARE = 0.3; // of the rated torque: travel of the loop of a gear from a file
 const MAX_CORRELATION = 0.5; // of each residual with the one before: beyond it, a fit is doubted
 const EFFECT = 1.1; // factor of a number whose effect is shown
+const MAX_BLOCK = 12; // ms: effects of many numbers are computed in pieces as long
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
 const MAX_STRONGEST = 4; // numbers below a plot
 const OUTPUTS = { "output angle": [3, "angle"], twist: [5, "angle"], "transmission error": [7, "angle"], torque: [8, "torque"], "input speed": [2, "speed"], "output speed": [4, "speed"] };
@@ -368,8 +369,9 @@ class Workbench {
     };
   }
   /** Beside each number of the gear: the change of the chosen measure if it grows by 10 %. */
-  showEffects() {
-    const changes = this.effects();
+  async showEffects() {
+    const changes = await this.effects();
+    if (!changes) return;
     for (const row of this.form.rows.values()) {
       const change = changes.get(row.path.join("."))?.[this.view.effect], shown = Math.abs(change) > MIN_EFFECT;
       row.effect.textContent = shown ? changeText(change) : "";
@@ -377,17 +379,21 @@ class Workbench {
     }
     for (const card of this.cards) if (card.measure) this.showStrongest(card, changes);
   }
-  /** Relative change of every measure if a number of the gear grows by 10 %, by the path of its row; NaN if there is none. */
-  effects() {
-    const { drive } = this.state, { gear } = this.sets, measures = Object.entries(this.measures);
+  /** Relative change of every measure if a number of the gear grows by 10 %, by the path of its row; null if the gear changes meanwhile. */
+  async effects() {
+    const { sets } = this, { drive } = this.state, { gear } = sets, measures = Object.entries(this.measures);
     const valueOf = (measure, sets) => { try { return measure(sets); } catch { return NaN; } }; // the plot says why
-    const now = measures.map(([, measure]) => valueOf(measure, this.sets)), changes = new Map();
-    gear.paths.forEach((path, i) => {
-      const keys = ["gear", ...keysOf(path)];
-      if (gear.numbers[i] === 0 || gear.fields[i].kind === "count") return;
-      const sets = setsOf(this.schema, replaced(drive, keys, gear.numbers[i] * EFFECT));
-      changes.set(keys.join("."), Object.fromEntries(measures.map(([name, measure], k) => [name, now[k] === 0 ? NaN : valueOf(measure, sets) / now[k] - 1])));
-    });
+    const now = measures.map(([, measure]) => valueOf(measure, sets)), changes = new Map();
+    let begin = performance.now();
+    for (let i = 0; i < gear.paths.length; i++) {
+      if (gear.numbers[i] === 0 || gear.fields[i].kind === "count") continue;
+      const keys = ["gear", ...keysOf(gear.paths[i])], changed = setsOf(this.schema, replaced(drive, keys, gear.numbers[i] * EFFECT));
+      changes.set(keys.join("."), Object.fromEntries(measures.map(([name, measure], k) => [name, now[k] === 0 ? NaN : valueOf(measure, changed) / now[k] - 1])));
+      if (performance.now() - begin < MAX_BLOCK) continue;
+      await new Promise((done) => setTimeout(done)); // the hand may move again
+      if (this.sets !== sets) return null;
+      begin = performance.now();
+    }
     return changes;
   }
   /** Below a plot: the numbers that change its reading most. */
