@@ -345,7 +345,7 @@ class Workbench {
     const wanted = this.view.travel.by === "torque" ? ["torque", "±", "N.m"] : ["twist", "±", "rad"];
     const made = [this.choice(["travel", "history"], Object.keys(HISTORIES), "history of the twist"), this.choice(["travel", "by"], ["torque", "twist"], "travel given by"), ...this.numberControls("travel", [wanted])];
     const { rated } = this.state.origin;
-    if (rated && this.view.travel.by === "torque") made.push(`= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque`);
+    if (this.view.travel.by === "torque") made.push(rated ? `= ${shortText((100 * this.view.travel.torque) / rated, 3)} % of rated torque` : "rated torque not given");
     return made;
   }
   /** Unit of the command: that of the controller, of the law that a sampled one contains, or of the motor in open loop. */
@@ -592,7 +592,11 @@ class Workbench {
     by("open").onclick = () => by("file").click();
     by("file").onchange = () => { const [file] = by("file").files; by("file").value = ""; if (file) this.openFile(file); };
     addEventListener("dragover", (event) => event.preventDefault());
-    addEventListener("drop", (event) => { event.preventDefault(); const [file] = event.dataTransfer.files; if (file) this.openFile(file); });
+    addEventListener("drop", (event) => { // unless a page around this one took it
+      const [file] = event.dataTransfer.files;
+      if (file && !event.defaultPrevented) this.openFile(file);
+      event.preventDefault();
+    });
     by("undo").onclick = () => this.travelBack(this.past, this.future);
     by("redo").onclick = () => this.travelBack(this.future, this.past);
     by("keep").onclick = () => { const { name, drive, origin } = this.state; this.other = { name: name || "kept", drive, origin }; this.draw(); };

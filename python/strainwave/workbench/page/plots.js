@@ -69,12 +69,11 @@ function svgOf({ title, width, height, frame, axes, curves, colours }) {
   return [
     `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" viewBox="0 0 ${width} ${height}" font-family="system-ui, sans-serif" font-size="12" fill="${colours.ink}">`,
     `<title>${escaped(title)}</title>`, `<rect width="${width}" height="${height}" fill="${colours.paper}"/>`,
-    `<clipPath id="frame"><rect x="${left}" y="${top}" width="${frame.width}" height="${frame.height}"/></clipPath>`,
     ...across.splits.map(([at, name]) => line(toX(at), top, toX(at), bottom) + text(toX(at), bottom + 16, name, 'text-anchor="middle"')),
     ...up.splits.map(([at, name]) => line(left, toY(at), right, toY(at)) + text(left - 6, toY(at) + 4, name, 'text-anchor="end"')),
     text(left + frame.width / 2, bottom + 34, across.label, 'text-anchor="middle"'),
     text(12, middle, up.label, `text-anchor="middle" transform="rotate(-90 12 ${middle})"`),
-    `<g clip-path="url(#frame)">`, ...drawn, "</g>", "</svg>", "",
+    `<svg x="${left}" y="${top}" width="${frame.width}" height="${frame.height}" viewBox="${left} ${top} ${frame.width} ${frame.height}">`, ...drawn, "</svg>", "</svg>", "",
   ].join("\n");
 }
 
