@@ -402,6 +402,7 @@ def test_a_wrong_file_is_refused_with_its_place() -> None:
         SMALL + "[[motor]]": "[motor]: a table expected",
         SMALL + "[__proto__]": "__proto__: no part of a gear file",
         SMALL + "[ratings]\nx = 1": "[ratings] x: a number is written as",
+        SMALL + '[covariance]\nnumbers = ["gear.damping"]\nmatrix = [[1.0, 2.0]]': "[covariance]: numbers, and a matrix",
     }
     for found, (text, expected) in zip(read_in_page(list(wrong)), wrong.items(), strict=True):
         assert isinstance(found, str), (expected, text)

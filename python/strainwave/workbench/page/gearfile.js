@@ -55,6 +55,7 @@ function gearFromToml(schema, text) {
   if (!isTable(loose)) failAt("[gear]", "a table expected");
   for (const field of ofGear) if (field.name in loose) failAt(`[gear] ${field.name}`, "a table of its own");
   const members = { ...loose, ...Object.fromEntries(ofGear.filter(({ name }) => content[name] !== undefined).map(({ name }) => [name, content[name]])) };
+  if (content.covariance !== undefined && !covarianceFrom(content.covariance)) failAt("[covariance]", "numbers, and a matrix with a row for each, expected");
   const drive = { gear: parametersOf(schema, "Gear", members, { path: "gear", header: "", sources, isLeftOut: content.gear === undefined }) };
   const parts = ofDrive.filter(({ name }) => content[name] !== undefined);
   for (const field of parts) drive[field.name] = partOf(schema, field, content[field.name], { path: field.name, header: field.name, sources });
