@@ -327,6 +327,13 @@ def test_a_random_part_of_the_error_is_drawn_and_stated(tab: Any) -> None:
     rms = float(re.search(r"RMS of this turn ([\d.]+)", readings(tab)["error"])[1])
     assert 0.03 < rms < 0.3
     assert number(readings(tab), "error") > 0.45
+    assert "sensors" not in readings(tab)["error"]
+    for angle, noise in (("output_angle", "3e-5"), ("input_angle", "4e-3")):
+        tab.locator(f"#law-sensors\\.{angle}").select_option("noisy")
+        tab.locator(f"#field-sensors\\.{angle}\\.amplitude").fill(noise)
+        tab.locator(f"#field-sensors\\.{angle}\\.amplitude").press("Enter")
+    found = float(re.search(r"noise of the angle sensors, RMS ([\d.]+)", readings(tab)["error"])[1])
+    assert found == pytest.approx(5e-5 * 10800.0 / np.pi, rel=1e-3)  # 1:100, so 3e-5 and 4e-5 rad at the output
 
 
 @needs_page

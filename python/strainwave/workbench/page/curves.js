@@ -23,7 +23,7 @@ const PLACES = ["input", "mesh", "output", "sum at the input"]; // of friction
 /** The parameters of a drive taken apart: of its gear, of the whole, and of the gear with the friction of another part at the input. */
 function setsOf(schema, drive) {
   const ofGear = (changes) => flattened(schema, "Gear", { ...drive.gear, ...changes });
-  return { gear: ofGear({}), drive: flattened(schema, "Drive", drive), gearWithInputFriction: (part) => ofGear({ friction_input: drive.gear[part] }) };
+  return { gear: ofGear({}), drive: flattened(schema, "Drive", drive), sensors: drive.sensors, gearWithInputFriction: (part) => ofGear({ friction_input: drive.gear[part] }) };
 }
 
 /** Twist [rad] and torque [N.m] along the chosen travel, and the first point of the last two stretches. */
@@ -108,6 +108,12 @@ const frictionAtSpeed = (core, sets, view) => frictionAt(core, sets, [view.speed
 function errorOverTurn(core, sets) {
   const angle = between(0, 2 * Math.PI, TURN_POINTS + 1), [repeating] = core.error(sets.gear, angle), random = core.noise(sets.gear, angle);
   return { x: angle, y: repeating.map((value, i) => value + random[i]), repeating, random };
+}
+/** Root mean square of the noise of a sensor, in the unit of what it measures. */
+const noiseOf = ({ model, law, amplitude }) => Math.hypot(model === "noisy" ? amplitude : 0, law ? noiseOf(law) : 0);
+/** That of the kinematic error [rad] as the sensors of both angles measure it. */
+function sensorNoise(core, sets) {
+  return Math.hypot(noiseOf(sets.sensors.output_angle), noiseOf(sets.sensors.input_angle) / core.ratio(sets.gear));
 }
 const COSINES = Float64Array.from({ length: TURN_POINTS }, (_, i) => Math.cos((2 * Math.PI * i) / TURN_POINTS));
 

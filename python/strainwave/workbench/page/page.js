@@ -270,9 +270,10 @@ class Workbench {
       }, { controls: () => this.numberControls("friction", [["speed", "input at", "rad/s"]]) }),
       card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
         const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)], isRandom = curve.random.some(Boolean), { rms } = rmsOf(curve.random, new Float64Array(curve.random.length));
+        const noise = sensorNoise(this.core, sets);
         const repeating = isRandom && which === "one" ? [this.scaled({ x: curve.x, y: curve.repeating }, axes, { colour: "--data", dash: true })] : [];
         return { curves: [this.scaled(curve, axes, look(which)), ...repeating],
-          numbers: [["peak to peak", text(high - low, this.unit("angle"))], ...(isRandom ? [["random part, RMS of this turn", text(rms, this.unit("angle"))]] : []), ...(repeating.length ? [["grey dashes:", "without it"]] : [])] };
+          numbers: [["peak to peak", text(high - low, this.unit("angle"))], ...(isRandom ? [["random part, RMS of this turn", text(rms, this.unit("angle"))]] : []), ...(repeating.length ? [["grey dashes:", "without it"]] : []), ...(noise ? [["noise of the angle sensors, RMS", text(noise, this.unit("angle"))]] : [])] };
       }, { measure: "kinematic error" }),
       card("orders", "Orders of the error", () => [{ label: "periods a turn of the input", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
         const curve = ordersOf(turnError(sets)), most = Math.max(...curve.y);
