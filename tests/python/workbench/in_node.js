@@ -6,7 +6,7 @@ const { gunzipSync } = require("node:zlib");
 const { runInThisContext } = require("node:vm");
 
 const [scripts, page] = process.argv.slice(2);
-runInThisContext(`${["model", "toml", "gearfile", "core", "curves", "fit", "plots", "form", "page"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
+runInThisContext(`${["model", "toml", "gearfile", "core", "curves", "fit", "plots", "form", "cards", "page"].map((name) => readFileSync(`${scripts}/${name}.js`, "utf8")).join("\n")}\nglobalThis.Core = Core;`);
 const bytesOf = (numbers) => Buffer.from(Float64Array.from(numbers).buffer).toString("base64");
 
 const TASKS = {

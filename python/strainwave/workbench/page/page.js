@@ -12,7 +12,6 @@ const EFFECT = 1.1; // factor of a number whose effect is shown
 const MAX_BLOCK = 12; // ms: effects of many numbers are computed in pieces as long
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
 const MAX_STRONGEST = 4; // numbers below a plot
-const OUTPUTS = { "output angle": [3, "angle"], twist: [5, "angle"], "transmission error": [7, "angle"], torque: [8, "torque"], "input speed": [2, "speed"], "output speed": [4, "speed"] };
 const SIGNS = { "N.m": "N·m", "mN.m": "mN·m", "kgf.m": "kgf·m", "kgf.cm": "kgf·cm" };
 
 const by = (id) => document.getElementById(id);
@@ -65,17 +64,6 @@ const placesOf = (set, parts) => set.paths.flatMap((path, i) => (parts.includes(
 const nameFrom = (text) => lineFrom(text.slice(0, 80));
 /** A relative change in percent, as "+3.3 %". */
 const changeText = (change) => `${change > 0 ? "+" : "−"}${shortText(Math.abs(100 * change), 2)}\u00a0%`;
-const listed = (names) => [names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ");
-const sentence = (names) => `${listed(names)} ${names.length > 1 ? "are" : "is"} assumed`;
-
-/** A function of the sets of a drive whose result several plots of one frame share. */
-function sharedByPlots(of) {
-  const known = new WeakMap();
-  return (sets) => {
-    if (!known.has(sets)) known.set(sets, of(sets));
-    return known.get(sets);
-  };
-}
 
 /** Python that computes the friction over the speed of the input at the place of a view. */
 function frictionPython({ place, load, temperature }) {
@@ -222,65 +210,8 @@ class Workbench {
   }
   // ---- The plots -----------------------------------------------------------------------------------------------------
   makeCards() {
-    const axis = (label, of) => ({ label: `${label} [${of.text}]`, factor: of.factor });
-    const degrees = { text: "°", factor: Math.PI / 180 };
-    const look = (which) => ({ colour: which === "one" ? "--one" : "--other", dash: which !== "one" });
-    const text = (value, of) => `${shortText(value / of.factor)} ${of.text}`;
-    const perAngle = () => this.unitOf("N.m/rad");
-    const turnLoop = sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel));
-    const turnError = sharedByPlots((sets) => errorOverTurn(this.core, sets));
-    const output = () => OUTPUTS[this.view.run.shown];
-    const friction = () => { // at the place of the view: words of its shaft
-      const { place } = this.view.friction, shaft = place === "mesh" || place === "output" ? "output" : "input";
-      return { shaft, axis: axis(place === "sum at the input" ? "friction, sum at the input" : `friction of the ${place}`, this.unit("torque")) };
-    };
-    const card = (key, title, axes, of, more = {}) => ({ key, title, axes, of: (sets, which) => of(sets, which, axes()), ...more });
-    return [
-      card("loop", "Torque over twist", () => [axis("twist", this.unit("angle")), axis("torque", this.unit("torque"))], (sets, which, axes) => {
-        const loop = turnLoop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
-        return { curves: [this.scaled({ x: loop.twist, y: loop.torque }, axes, look(which))],
-          numbers: [["loop width", text(width, this.unit("angle"))], ["mean stiffness", text(stiffness, perAngle())], ["loss a cycle", `${shortText(loss)} J`], ...(which === "one" && this.assumes("hysteresis") ? [["from assumed numbers", ""]] : [])] };
-      }, { measure: "loop width", takes: true, slot: () => "loop", fits: () => ["stiffness", "hysteresis"], controls: () => this.travelControls(), residual: ({ x, y }) => {
-        const { zeros } = this.state, record = new LoopRecord(x, y, zeros ?? [0, 0]), { rms, count } = rmsOf(record.predicted(this.core, this.sets.gear, [], record.zeros).values, y);
-        const found = zeros && record.isLoop ? `; its zeros: torque ${text(zeros[0], this.unit("torque"))}, twist ${text(zeros[1], this.unit("angle"))}` : "";
-        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points${found}`;
-      } }),
-      card("stiffness", "Stiffness over torque", () => [axis("torque", this.unit("torque")), axis("stiffness", perAngle())], (sets, which, axes) => {
-        const loop = turnLoop(sets), slopes = slopesOfLoop(loop), top = slopes.y.filter(Number.isFinite);
-        return { curves: [this.scaled(slopes, axes, look(which))], numbers: [["from", text(Math.min(...top), perAngle())], ["to", text(Math.max(...top), perAngle())]] };
-      }, { measure: "mean stiffness" }),
-      card("run", "Response of the whole drive", () => [{ label: "time [s]", factor: 1 }, axis(this.view.run.shown, this.unit(output()[1]))], (sets, which, axes) => {
-        const unit = this.unit(output()[1]), [si] = Object.keys(this.schema.units[output()[1]]), both = (value) => `${text(value, unit)}${unit.factor === 1 ? "" : ` = ${shortText(value)} ${si.replace(".", "·")}`}`;
-        const run = runOf(this.core, sets, this.view.run, output()[0]), last = run.output.at(-1), peak = Math.max(...run.output.map(Math.abs)), assumed = this.assumedParts();
-        const curves = [this.scaled({ x: run.time, y: run.output }, axes, look(which))];
-        const hasCommand = which === "one" && { "output angle": "rad", "output speed": "rad/s" }[this.view.run.shown] === this.commandUnit();
-        if (hasCommand) curves.push(this.scaled({ x: run.time, y: run.command }, axes, { colour: "--data", dash: true }));
-        return { curves, numbers: [["at the end", both(last)], ["largest", both(peak)], ...(hasCommand ? [["grey dashes:", "command"]] : []), ...(run.reason ? [["stopped:", run.reason]] : []), ...(which === "one" && assumed.length ? [[sentence(assumed), ""]] : [])] };
-      }, { slow: true, controls: () => this.runControls() }),
-      card("friction", "Friction over speed", () => [axis(`${friction().shaft} speed`, this.unit("speed")), friction().axis], (sets, which, axes) => {
-        const curve = frictionOverSpeed(this.core, sets, this.view.friction), at = frictionAtSpeed(this.core, sets, this.view.friction);
-        return { curves: [this.scaled(curve, axes, look(which))], numbers: [[`at ${text(this.view.friction.speed, this.unit("speed"))} of the input`, text(at, this.unit("torque"))]] };
-      }, { measure: "friction at speed", takes: true, slot: () => `friction of ${this.view.friction.place}`, fits: () => [frictionPart(this.view.friction.place)].filter(Boolean), controls: () => [this.choice(["friction", "place"], PLACES, "place of the friction"), ...this.numberControls("friction", [["maxSpeed", "input up to", "rad/s"], ["load", "input load", "N.m"], ["temperature", "temperature [K]", ""]])], residual: (measured) => {
-        const { rms, count } = rmsOf(frictionAt(this.core, this.sets, measured.x, new Float64Array(measured.x.length).fill(this.view.friction.angle), this.view.friction), measured.y);
-        return `RMS residual ${text(rms, this.unit("torque"))} of ${count} points`;
-      } }),
-      card("angle", "Friction over a turn", () => [axis(`${friction().shaft} angle`, degrees), friction().axis], (sets, which, axes) => {
-        const curve = frictionOverAngle(this.core, sets, this.view.friction), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)];
-        return { curves: [this.scaled(curve, axes, look(which))], numbers: [["peak to peak", text(high - low, this.unit("torque"))]] };
-      }, { controls: () => this.numberControls("friction", [["speed", "input at", "rad/s"]]) }),
-      card("error", "Kinematic error", () => [axis("input angle", degrees), axis("error at the output", this.unit("angle"))], (sets, which, axes) => {
-        const curve = turnError(sets), [low, high] = [Math.min(...curve.y), Math.max(...curve.y)], isRandom = curve.random.some(Boolean), { rms } = rmsOf(curve.random, new Float64Array(curve.random.length));
-        const noise = sensorNoise(this.core, sets);
-        const repeating = isRandom && which === "one" ? [this.scaled({ x: curve.x, y: curve.repeating }, axes, { colour: "--data", dash: true })] : [];
-        return { curves: [this.scaled(curve, axes, look(which)), ...repeating],
-          numbers: [["peak to peak", text(high - low, this.unit("angle"))], ...(isRandom ? [["random part, RMS of this turn", text(rms, this.unit("angle"))]] : []), ...(repeating.length ? [["grey dashes:", "without it"]] : []), ...(noise ? [["noise of the angle sensors, RMS", text(noise, this.unit("angle"))]] : [])] };
-      }, { measure: "kinematic error" }),
-      card("orders", "Orders of the error", () => [{ label: "periods a turn of the input", factor: 1 }, axis("amplitude", this.unit("angle"))], (sets, which, axes) => {
-        const curve = ordersOf(turnError(sets)), most = Math.max(...curve.y);
-        return { curves: [this.scaled({ x: [...curve.x, NaN], y: [...curve.y, 0] }, axes, { ...look(which), mark: "bar" })],
-          numbers: [["largest", most > 0 ? `${text(most, this.unit("angle"))} of order ${curve.x[curve.y.indexOf(most)]}` : "none"]] };
-      }),
-    ];
+    const shared = { loop: sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel)), error: sharedByPlots((sets) => errorOverTurn(this.core, sets)) };
+    return CARDS.map((kind) => new kind(this, shared));
   }
   /** True if a number of a part of the gear is assumed. */
   assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.entryOf(path)[0].startsWith("assumed")); }
