@@ -107,6 +107,17 @@ def idle(gear_set: Contents) -> list[str]:
     return of_parts + [path for table, model in filled for name in at_rest(model) for path in _paths_of(table, model, name)]
 
 
+def optional_tables(kind: type[Any]) -> frozenset[str]:
+    """Return the names of the parts of a class of models whose tables a file may leave out.
+
+    >>> import strainwave as sw
+    >>> sorted(set(sw.Gear.fields[i]["name"] for i in range(5)) & optional_tables(sw.Gear))
+    ['hysteresis', 'kinematic_error', 'kinematic_noise']
+    """
+    own = {Gear: [each for each in _tables() if each.in_gear], Drive: [each for each in _tables() if not each.in_gear]}
+    return frozenset(table.name for table in own.get(kind, _inner("", kind)) if not table.required)
+
+
 def at_rest(model: Any) -> list[str]:
     """Return the numbers of a model that a file may leave out, and that have the value which they then have."""
     return [name for name in sorted(optional(model)) if getattr(model, name) == default_of(model, name)]
