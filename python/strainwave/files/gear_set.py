@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_chec
 
 from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
-from strainwave.files import datasheet, gear_file
+from strainwave.files import datasheet, gear_file, harmonic_drive
 from strainwave.files.described import all_paths, default_of, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
@@ -33,10 +33,7 @@ if TYPE_CHECKING:
 Kind = TypeVar("Kind", bound=Entry)
 _DRIVE_PARTS = [field["name"] for field in Drive.fields]
 
-CATALOGUE_FOLDER = Path(__file__).parents[1] / "catalogue"  # of the package
-CATALOGUE_FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
-
-
+DRIVES_FOLDER = Path(__file__).parents[1] / "catalogue" / "drives"
 MAX_LOADED_SETS = 100  # the last ones
 _LOADED_SETS: dict[Gear, GearSet] = {}
 
@@ -224,9 +221,9 @@ class GearSet(Pictured):
         >>> round(gear_set.gear.stiffness.k1), gear_set.motor  # N.m/rad; a catalogue of gears has no motors
         (26700, None)
         """
-        path = _file(name_or_path)
-        with gear_file.at(f"{path}"):
-            content = gear_file.document(path)
+        place = _place(name_or_path)
+        with gear_file.at(f"{place}"):
+            content = harmonic_drive.document(place) if isinstance(place, str) else gear_file.document(place)
             return _of_sheet(datasheet.read(content)) if "datasheet" in content else GearSet(**gear_file.read(content))
 
     @staticmethod
@@ -364,7 +361,9 @@ def catalogue(of: str = "gears") -> list[str]:
     >>> catalogue("drives")[:3]
     ['position-drive', 'position-drive-full-friction', 'position-drive-printed']
     """
-    return sorted(file.stem for file in CATALOGUE_FOLDERS[arguments.one_of("of", of, CATALOGUE_FOLDERS)].glob("*.toml"))
+    if arguments.one_of("of", of, ("gears", "drives")) == "gears":
+        return sorted(harmonic_drive.gears())
+    return sorted(file.stem for file in DRIVES_FOLDER.glob("*.toml"))
 
 
 def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
@@ -404,7 +403,8 @@ def load(name_or_path: str | Path) -> Any:
     """
     gear_set = GearSet.read(name_or_path)
     # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
-    if gear_set.ratings and _file(name_or_path).parent not in CATALOGUE_FOLDERS.values():
+    place = _place(name_or_path)
+    if gear_set.ratings and isinstance(place, Path) and place.parent != DRIVES_FOLDER:
         _LOADED_SETS.pop(gear_set.gear, None)
         _LOADED_SETS[gear_set.gear] = gear_set
         if len(_LOADED_SETS) > MAX_LOADED_SETS:
@@ -541,7 +541,8 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
     return MappingProxyType(dict(entries))
 
 
-def _file(name_or_path: str | Path) -> Path:
+def _place(name_or_path: str | Path) -> str | Path:
+    """Return the name of a gear of the catalogue, or the path of a file."""
     path = Path(name_or_path)
     if path.suffix.lower() in FORMATS and path.is_file():
         if path.name == "results.json" and (gear := path.with_name(GEAR_FILE)).exists():
@@ -552,21 +553,21 @@ def _file(name_or_path: str | Path) -> Path:
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
-    files = {name: folder / f"{name}.toml" for of, folder in CATALOGUE_FOLDERS.items() for name in catalogue(of)}
+    gears, drives = catalogue(), catalogue("drives")
     name = spelled(name_or_path)
-    if name not in files and path.is_dir():
+    if name not in gears + drives and path.is_dir():
         return path / GEAR_FILE
-    if name not in files:
+    if name not in gears + drives:
         size, _, ratio = name.rpartition("-")
-        ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
-        near = ", ".join(difflib.get_close_matches(name, files))
+        ratios = sorted(int(each.rpartition("-")[2]) for each in gears if each.rpartition("-")[0] == size)
+        near = ", ".join(difflib.get_close_matches(name, gears + drives))
         hint = f"; near it are {near}" if near else ""
         hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
         raise ValueError(
             f"no set {quoted(name_or_path)} in the catalogue{hint}; "
             'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
         )
-    return files[name]
+    return name if name in gears else DRIVES_FOLDER / f"{name}.toml"
 
 
 def spelled(name: str) -> str:
