@@ -34,8 +34,6 @@ Kind = TypeVar("Kind", bound=Entry)
 _DRIVE_PARTS = [field["name"] for field in Drive.fields]
 
 DRIVES_FOLDER = Path(__file__).parents[1] / "catalogue" / "drives"
-MAX_LOADED_SETS = 100  # the last ones
-_LOADED_SETS: dict[Gear, GearSet] = {}
 
 
 class Estimated(Protocol):
@@ -386,8 +384,8 @@ def load(name_or_path: str | Path) -> Any:
     """Return the drive of a file that has a motor and a load, else the gear.
 
     A saved gear is loaded as a gear, a saved drive as a drive. If the type must be known beforehand, `GearSet.read(path).gear`
-    is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings; yet the ratings of a file, a data
-    sheet among them, are remembered: `simulate` compares with them every drive that has this gear unchanged.
+    is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings: the set has them, and `simulate`
+    takes a set in place of its drive.
 
     Args:
         name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
@@ -402,27 +400,7 @@ def load(name_or_path: str | Path) -> Any:
     (50000.0, 2.0)
     """
     gear_set = GearSet.read(name_or_path)
-    # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
-    place = _place(name_or_path)
-    if gear_set.ratings and isinstance(place, Path) and place.parent != DRIVES_FOLDER:
-        _LOADED_SETS.pop(gear_set.gear, None)
-        _LOADED_SETS[gear_set.gear] = gear_set
-        if len(_LOADED_SETS) > MAX_LOADED_SETS:
-            del _LOADED_SETS[next(iter(_LOADED_SETS))]
     return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
-
-
-def loaded_set(gear: Gear) -> GearSet | None:
-    """Return the set with ratings that a gear was loaded from; None if it was not loaded from a file with ratings.
-
-    A gear is a value of C++, which a drive copies: it cannot contain its ratings.
-    """
-    return _LOADED_SETS.get(gear) if _LOADED_SETS else None
-
-
-def forget_loaded_sets() -> None:
-    """Forget the sets of all gears that were loaded."""
-    _LOADED_SETS.clear()
 
 
 @overload
