@@ -1,8 +1,8 @@
 """Progress of long calls: one argument, which means the same everywhere.
 
-`sw.simulate` and its kin, `sw.identify`, `sw.predict`, `sw.compensate` and other long calls take `progress`: None shows a bar
-on a terminal once the call has taken a second, True shows it at once, False shows nothing, and a function is called with what
-is worked on and with the share of the whole that is done.
+`sw.simulate` and its kin, `sw.fit`, `sw.identify`, `sw.predict`, `sw.compensate` and other long calls take `progress`: None
+shows a bar on a terminal once the call has taken a second, True shows it at once, False shows nothing, and a function is
+called with what is worked on and with the share of the whole that is done. Calls within a call show nothing.
 
 >>> shares = []
 >>> with by_count(lambda stage, share: shares.append((stage, share)), "simulating", 4) as done:
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 Report: TypeAlias = Callable[[str, float], None]  # called with a stage and the share done, in [0, 1], nan if not known
 Progress: TypeAlias = bool | Report | None
 SHOWN_AFTER = 1.0  # s, that a call takes before its bar appears
-_shown = Lock()  # of the one bar that a terminal has: calls within a call show none
+_outermost = Lock()  # of the call whose bar a terminal may show: calls within a call show none
 
 
 @contextmanager
@@ -64,23 +64,24 @@ def _watched(progress: Progress) -> Iterator[Report | None]:
     Raises:
         TypeError: `progress` is neither None, True, False nor a function
     """
-    if callable(progress):
-        yield progress
-        return
-    if not (progress is None or isinstance(progress, bool)):
+    if not (callable(progress) or progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress = {shortened(progress)} must be True, False, None, or a function of a stage and a share")
-    wanted = (sys.stderr is not None and sys.stderr.isatty()) if progress is None else progress
-    if not wanted or current_thread() is not main_thread() or not _shown.acquire(blocking=False):
-        yield None
-        return
+    is_outermost = current_thread() is main_thread() and _outermost.acquire(blocking=False)
     try:
-        bar = _Bar(0.0 if progress else SHOWN_AFTER)
-        try:
-            yield bar.report
-        finally:
-            bar.close()
+        is_shown = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
+        if callable(progress):
+            yield progress
+        elif not (is_outermost and is_shown):
+            yield None
+        else:
+            bar = _Bar(0.0 if progress else SHOWN_AFTER)
+            try:
+                yield bar.report
+            finally:
+                bar.close()
     finally:
-        _shown.release()
+        if is_outermost:
+            _outermost.release()
 
 
 class _Bar:

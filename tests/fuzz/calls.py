@@ -28,15 +28,7 @@ from tests.fuzz.mutation import picked
 from tests.support.strategies import made as usual_of
 
 MODULES = (
-    *(
-        "files.units",
-        "files.figures",
-        "files.gear_set",
-        "files.entries",
-        "files.recording",
-        "parameters",
-        "simulation.scenario",
-    ),
+    *("files.units", "files.gear_set", "files.entries", "files.recording", "parameters", "simulation.scenario"),
     *(f"identification.experiments.{name}" for name in ("experiment", "friction_table", "torsion_loop", "drive_log")),
 )
 LAWS = ("friction", "hysteresis", "kinematic_error", "stiffness")

@@ -23,6 +23,7 @@ from strainwave.identification.fitting.problem import LOSSES, FitRecord, LossNam
 from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.presentation import Pictured, Presented, Row, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.threads import one_thread_of_algebra
 from strainwave.statistics.residuals import correlation_length
@@ -281,6 +282,7 @@ def fit(
     ties: Mapping[str, str | tuple[str, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     per_record: Sequence[str] = (),
+    progress: Progress = None,
 ) -> Fit:
     """Fit free parameters of a model to measurements by least squares.
 
@@ -311,6 +313,7 @@ def fit(
         ties: parameters that follow a free one, by path: its path, or its path and the factor that it is multiplied by
         fixed: values of parameters that are not free, by path; they take the place of those of the model
         per_record: free parameters of which each record has its own value, as the load or what the temperature changes
+        progress: as of `sw.simulate`
 
     Returns:
         the fitted model with its uncertainty
@@ -350,14 +353,15 @@ def fit(
         for own, each in zip(_models(model, asked), records.values(), strict=True)
     ]
     problem = problem_of(asked, model, experiments, _masks(training, list(records)), loss)
-    for experiment, (predicted, _) in zip(experiments, problem.predict(problem.start()), strict=True):
-        if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):  # nothing changes with its parameters
-            raise ValueError(
-                "the model does not move under this command, though the drive did: nothing can be fitted from there. Start "
-                "with less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit "
-                "of the command is right"
-            )
-    fitted = solved_from(problem, problem.start())
+    with in_turn(progress) as problem.watch:
+        for experiment, (predicted, _) in zip(experiments, problem.predict(problem.start()), strict=True):
+            if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):  # nothing changes with its parameters
+                raise ValueError(
+                    "the model does not move under this command, though the drive did: nothing can be fitted from there. "
+                    "Start with less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see "
+                    "whether the unit of the command is right"
+                )
+        fitted = solved_from(problem, problem.start())
     for part in fitted.parts:
         if isinstance(part.experiment, DriveLog | DrivenLog):
             moved = part.model if isinstance(part.experiment, DriveLog) else driven(part.model)
