@@ -42,6 +42,7 @@ MAX_START_SIGMA = 3.0  # standard deviations of a prior: an unknown that ended f
 MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
 MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
 OF_GEAR = (FrictionTable, TorsionLoop)  # experiments on a gear, also if the model is a drive
+ABSCISSAE = ((FrictionTable, "speed", "rad/s"), (TorsionLoop, "twist", "rad"))  # of others time
 OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
 
 
@@ -72,6 +73,27 @@ class RecordFit(ComparedByFields, Presented):
         """Return the root mean square residual of each channel over the samples that took part, or over those that did not."""
         residuals = self.residuals[:, ~self.training if held_out else self.training]
         return np.sqrt(np.mean(residuals**2, axis=1)) if residuals.size else np.full(len(residuals), np.nan)
+
+    def curves(self, sigmas: Array | None = None) -> tuple[Recording, ...]:
+        """Return the curves of each channel, as `Fit.curves`.
+
+        Args:
+            sigmas: standard deviation of the prediction, shape (channels, n); no `sigma` where it is not given or infinite
+        """
+        experiment: Any = self.experiment
+        is_log = not isinstance(experiment, OF_GEAR)
+        over, unit = (
+            ("time", "s") if is_log else ("speed", "rad/s") if isinstance(experiment, FrictionTable) else ("twist", "rad")
+        )
+        every = []
+        for place, (channel, channel_unit) in enumerate(zip(experiment.channels, experiment.units, strict=True)):
+            columns = {over: getattr(experiment, over), channel: experiment.measured[place], "modelled": self.predicted[place]}
+            units = {over: unit, channel: channel_unit, "modelled": channel_unit, "held_out": "1"}
+            columns["held_out"] = (~self.training).astype(float)
+            if sigmas is not None and np.isfinite(sigmas[place]).all():
+                columns["sigma"], units["sigma"] = sigmas[place], channel_unit
+            every.append(Recording(columns, units))
+        return tuple(every)
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +216,54 @@ class Fit(ComparedByFields, Pictured):
                         "try sw.identification.minima(fit)"
                     )
 
+    def part(self, record: str | None = None) -> RecordFit:
+        """Return the part of a record by its name, the first one if no name is given.
+
+        Raises:
+            ValueError: no record has that name
+            TypeError: the name is no text
+        """
+        if record is None:
+            return self.parts[0]
+        names = [part.name for part in self.parts]
+        if arguments.text("record", record) not in names:
+            raise ValueError(f"no record {quoted(record)}; there are {listed(names)}")
+        return self.parts[names.index(record)]
+
+    def curves(self, record: str | None = None) -> tuple[Recording, ...]:
+        """Return measurement and prediction of each channel of a record, to be drawn.
+
+        Args:
+            record: its name, as in `parts`; the first one if not given
+
+        Returns:
+            Of each channel: speed, twist or time; the channel, under its name; `modelled`, the prediction; `held_out`, 1 where
+            a sample took no part in the fit; and of a fit to one record `sigma`, the standard deviation of `modelled` by that
+            of the estimates, if the data determine all of them
+
+        The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
+        prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
+
+        Raises:
+            ValueError: no record has that name
+            TypeError: the name is no text
+        """
+        return self.part(record).curves(self._sigmas() if len(self.parts) == 1 else None)
+
+    def _sigmas(self) -> Array:
+        """Return the standard deviation of the prediction of the first record, shape (channels, n)."""
+        part, own = self.parts[0], {each.path: place for place, each in enumerate(self.estimates)}
+        zeros = [each.name for each in part.experiment.nuisances]
+        numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
+        free = [path for path in own if path in numbers and path not in zeros]
+        nuisances = np.array([self.estimates[own[name]].value for name in zeros])
+        _, slopes = part.experiment.predict(part.model, [numbers[path] for path in free], nuisances)
+        places = [own[path] for path in (*free, *zeros)]
+        covariance = self.covariance[np.ix_(places, places)]
+        with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
+            variance: Array = np.einsum("icn,ij,jcn->cn", slopes, covariance, slopes, optimize=True)
+        return np.sqrt(np.clip(variance, 0.0, None))
+
     def plot(self, record: str | None = None) -> Figure:
         """Return a figure of each channel of a record: measured and predicted, and the residual below.
 
@@ -207,12 +277,12 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name
             TypeError: the name is no text
         """
-        from strainwave.identification.results.pictures import part_named, pictures_figure, pictures_of
+        from strainwave.identification.results.pictures import picture_of, pictures_figure
 
-        part = part_named(self, record)
+        part = self.part(record)
         channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
         of = f", {part.name}" if len(self.parts) > 1 else ""
-        return pictures_figure(pictures_of(self, record), f"Measured and predicted {channels}{of}")
+        return pictures_figure([picture_of(curves) for curves in self.curves(record)], f"Measured and predicted {channels}{of}")
 
     def plot_residual_spectrum(self, record: str | None = None) -> Figure:
         """Return a figure of the amplitude spectra of a log: of each channel measured, and of its residual.
@@ -227,10 +297,11 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name, or the record has no time
             TypeError: the name is no text
         """
-        from strainwave.identification.results.pictures import part_named, spectrum_figure
+        from strainwave.identification.results.pictures import spectrum_figure
 
-        part = part_named(self, record)
-        return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
+        part = self.part(record)
+        title = f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}"
+        return spectrum_figure(part.experiment, part.residuals, title)
 
     def _headline(self) -> str:
         left = list(self._left())
