@@ -34,6 +34,7 @@ Kind = TypeVar("Kind", bound=Entry)
 _DRIVE_PARTS = [field["name"] for field in Drive.fields]
 
 DRIVES_FOLDER = Path(__file__).parents[1] / "catalogue" / "drives"
+BASE_KEY = "base"  # of a file: the set of the catalogue whose tables it has where it has none of its own
 
 
 class Estimated(Protocol):
@@ -206,7 +207,8 @@ class GearSet(Pictured):
 
         Args:
             name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder.
-                A file with a table [datasheet] holds figures of a maker, as `from_datasheet` takes them
+                A file with a table [datasheet] contains figures of a maker, as `from_datasheet` takes them; one with base =
+                "csg-25-100" has the tables of that set where it has none of its own
 
         Returns:
             The set, in SI units. A table left out is the part that does nothing, its sources are "not given".
@@ -221,7 +223,7 @@ class GearSet(Pictured):
         """
         place = _place(name_or_path)
         with gear_file.at(f"{place}"):
-            content = harmonic_drive.document(place) if isinstance(place, str) else gear_file.document(place)
+            content = _content(place)
             return _of_sheet(datasheet.read(content)) if "datasheet" in content else GearSet(**gear_file.read(content))
 
     @staticmethod
@@ -519,6 +521,27 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
     return MappingProxyType(dict(entries))
 
 
+def _content(place: str | Path) -> dict[str, Any]:
+    """Return the content of a gear of the catalogue, or of a file, with the tables of the set that the file is based on."""
+    if isinstance(place, str):
+        return harmonic_drive.document(place)
+    content = gear_file.document(place)
+    if BASE_KEY not in content:
+        return content
+    base = arguments.text(BASE_KEY, content.pop(BASE_KEY))
+    of_base = _place_of_set(spelled(base))
+    if of_base is None:
+        raise ValueError(f"{BASE_KEY} = {quoted(base)} is no set of the catalogue, which `strainwave list` lists")
+    return {key: table for key, table in _content(of_base).items() if isinstance(table, dict)} | content
+
+
+def _place_of_set(name: str) -> str | Path | None:
+    """Return the name of a gear of the catalogue, or the file of a drive; None if there is no set of this name."""
+    if name in harmonic_drive.gears():
+        return name
+    return DRIVES_FOLDER / f"{name}.toml" if name in catalogue("drives") else None
+
+
 def _place(name_or_path: str | Path) -> str | Path:
     """Return the name of a gear of the catalogue, or the path of a file."""
     path = Path(name_or_path)
@@ -531,21 +554,20 @@ def _place(name_or_path: str | Path) -> str | Path:
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
-    gears, drives = catalogue(), catalogue("drives")
     name = spelled(name_or_path)
-    if name not in gears + drives and path.is_dir():
+    if (of_set := _place_of_set(name)) is not None:
+        return of_set
+    if path.is_dir():
         return path / GEAR_FILE
-    if name not in gears + drives:
-        size, _, ratio = name.rpartition("-")
-        ratios = sorted(int(each.rpartition("-")[2]) for each in gears if each.rpartition("-")[0] == size)
-        near = ", ".join(difflib.get_close_matches(name, gears + drives))
-        hint = f"; near it are {near}" if near else ""
-        hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
-        raise ValueError(
-            f"no set {quoted(name_or_path)} in the catalogue{hint}; "
-            'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
-        )
-    return name if name in gears else DRIVES_FOLDER / f"{name}.toml"
+    size, _, ratio = name.rpartition("-")
+    ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
+    near = ", ".join(difflib.get_close_matches(name, catalogue() + catalogue("drives")))
+    hint = f"; near it are {near}" if near else ""
+    hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
+    raise ValueError(
+        f"no set {quoted(name_or_path)} in the catalogue{hint}; "
+        'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
+    )
 
 
 def spelled(name: str) -> str:
