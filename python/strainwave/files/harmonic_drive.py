@@ -12,14 +12,6 @@ from strainwave.files import typical_gear as typical
 from strainwave.files.typical_gear import rounded
 
 TABLES_FILE = Path(__file__).parents[1] / "catalogue" / "harmonic-drive.toml"
-RATING_WORDS = {
-    "rated_torque": "rated torque at 2000 rpm",
-    "average_torque": "limit for average torque",
-    "peak_torque": "limit for repeated peak torque",
-    "momentary_torque": "limit for momentary peak torque",
-    "maximum_input_speed": "maximum input speed",
-    "average_input_speed": "limit for average input speed",
-}
 TOP_RATIO_COLUMN = 80  # the tables of stiffness have one column for it and all above
 CSG_OVER_STANDARD = 1.3  # ratings of the high-torque class over those of the standard class, as HFUC
 STANDARD_CLASS = "CSF and HFUC are both the standard class"
@@ -68,125 +60,96 @@ def document(name: str) -> dict[str, Any]:
     50000.0
     """
     gear = gears()[name]
-    inertia, inertia_source = _inertia(gear)
-    damping = typical.damping(_torsional_stiffness(gear)["K1"], gear.ratio, inertia)
     ratings, note = _ratings(gear)
-    content = {
-        "name": gear.label,
-        "maker": _tables()["maker"],
-        "kinematics": _kinematics(gear),
-        **_torsion(gear),
-        "kinematic_error": _kinematic_error(gear),
-        **_friction(gear),
-        "gear": {
-            "damping": _entry(
-                rounded(damping, 4),
-                "N.m.s/rad",
-                "assumed: 2 % of critical for the wave generator swinging against a held output, "
-                "0.04 sqrt(K1 x ratio^2 x input_inertia)",
-            ),
-            "input_inertia": _entry(inertia, "kg.m2", inertia_source),
-        },
-        "ratings": ratings,
-    }
+    tables = {table: _entries(table, keys, gear) for table, keys in _numbers(gear).items()}
+    content = {"name": gear.label, "maker": _tables()["maker"], **tables, "ratings": ratings}
     return content | {"note": note} if note else content
 
 
-def _kinematics(gear: ListedGear) -> dict[str, Any]:
-    teeth, rule = 2 * gear.ratio, f"ratio {gear.ratio} with the circular spline fixed: z_f = 2 x ratio"
-    return {
-        "model": "strain_wave",
-        "flexspline_teeth": _entry(teeth, "1", rule),
-        "circular_spline_teeth": _entry(teeth + 2, "1", "two teeth more than the flexspline"),
-        "fixed": "circular_spline",
-    }
-
-
-def _torsion(gear: ListedGear) -> dict[str, Any]:
-    """The tables of stiffness and hysteresis: the figures of the whole gear, divided between both."""
+def _numbers(gear: ListedGear) -> dict[str, dict[str, Any]]:
+    """Return the numbers of a gear, each with its unit, and the words of its models, by table and key."""
     k1, k2, k3, t1, t2 = _torsional_stiffness(gear).values()
-    bound = typical.hysteresis_loss(gear.ratio)
-    divided = typical.Divided.of(k1, t1, t2, bound)
+    divided = typical.Divided.of(k1, t1, t2, typical.hysteresis_loss(gear.ratio))
     breakaway = rounded(divided.breakaway[0], 5)
     held = len(divided.breakaway) * breakaway
-    width = f"{0.5 * bound / typical.RAD_PER_ARCMIN:.3g} arcmin"
-    of_k1 = _spring_source(gear, "K1", f" = {k1 / 1e3:g}e3 N.m/rad")
-    spring = {
-        "k1": (
-            rounded(k1 * (1.0 - held / t1), 6),
-            f"{of_k1}; the spring's part K1 (1 - F/T1), with F the sum of the hysteresis breakaways",
-        ),
-        "k2": (k2, _spring_source(gear, "K2")),
-        "k3": (k3, _spring_source(gear, "K3")),
-        "t1": (round(t1 - held, 8), f"{_spring_source(gear, 'T1', f' = {t1:g} N.m')}; the spring's part T1 - F"),
-        "t2": (round(t2 - held, 8), f"{_spring_source(gear, 'T2', f' = {t2:g} N.m')}; the spring's part T2 - F"),
+    elements = [rounded(element, 4) for element in divided.stiffness]
+    amplitude = rounded(0.25 * typical.transmission_accuracy(gear.size, gear.ratio), 4)
+    dry = rounded(typical.EXACT_STARTING_TORQUE * gear.size**3 / gear.ratio, 4)
+    viscous = rounded(typical.EXACT_VISCOUS_FRICTION * (gear.size / 20) ** 3, 4)
+    inertia, _ = _inertia(gear)
+    return {
+        "kinematics": {
+            "model": "strain_wave",
+            "flexspline_teeth": (2 * gear.ratio, "1"),
+            "circular_spline_teeth": (2 * gear.ratio + 2, "1"),
+            "fixed": "circular_spline",
+        },
+        "stiffness": {
+            "model": "three_segment",
+            "k1": (rounded(k1 * (1.0 - held / t1), 6), "N.m/rad"),
+            "k2": (k2, "N.m/rad"),
+            "k3": (k3, "N.m/rad"),
+            "t1": (round(t1 - held, 8), "N.m"),
+            "t2": (round(t2 - held, 8), "N.m"),
+        },
+        "hysteresis": {
+            "model": "maxwell_slip",
+            "stiffness": (elements, "N.m/rad"),
+            "breakaway": ([breakaway] * len(elements), "N.m"),
+        },
+        "kinematic_error": {
+            "model": "fourier", "order": ([2.0], "1"), "amplitude": ([amplitude], "rad"), "phase": ([0.0], "rad"),
+        },
+        "friction_input": {
+            "model": "coulomb", "coulomb": (dry, "N.m"), "breakaway": (dry, "N.m"), "viscous": (viscous, "N.m.s/rad"),
+        },
+        "friction_output": {"model": "viscous", "viscous": (0.0, "N.m.s/rad")},
+        "gear": {
+            "damping": (rounded(typical.damping(k1, gear.ratio, inertia), 4), "N.m.s/rad"),
+            "input_inertia": (inertia, "kg.m2"),
+        },
+    }  # fmt: skip
+
+
+def _entries(table: str, keys: Mapping[str, Any], gear: ListedGear) -> dict[str, Any]:
+    """Return a table of a set, with the source of each number."""
+    loss = typical.hysteresis_loss(gear.ratio) / typical.RAD_PER_ARCMIN
+    words = {
+        **{figure: _spring_source(gear, figure, value) for figure, value in _torsional_stiffness(gear).items()},
+        "inertia": _inertia(gear)[1],
+        "ratio": gear.ratio,
+        "column": gear.ratio_column,
+        "loss": loss,
+        "half_loss": 0.5 * loss,
+        "accuracy": typical.transmission_accuracy(gear.size, gear.ratio) / typical.RAD_PER_ARCMIN,
+        "cha_size": "40 and 50, hence 45" if gear.size == 45 else gear.size,  # CHA has none of size 45
     }
-    units = {key: "N.m/rad" if key.startswith("k") else "N.m" for key in spring}
-    entries = {key: _entry(value, units[key], source) for key, (value, source) in spring.items()}
-    hysteresis = {
-        "model": "maxwell_slip",
-        "stiffness": _entry(
-            [rounded(element, 4) for element in divided.stiffness],
-            "N.m/rad",
-            "assumed: 2/3, 1/3 and 1/6 of k1, so that all elements slip well below T1; at a reversal the gear is at first "
-            "13/6 k1 stiff",
-        ),
-        "breakaway": _entry(
-            [breakaway] * len(divided.breakaway),
-            "N.m",
-            f"assumed: k1 x {width} / 6 each: loop {width} wide at zero torque, half the bound on hysteresis loss "
-            f"(< {bound / typical.RAD_PER_ARCMIN:.3g} arcmin)",
-        ),
-    }
-    spread = {"spread": typical.UNITS_SPREAD}
-    stiffness = {"model": "three_segment"} | {key: entry | spread for key, entry in entries.items()}
-    return {"stiffness": stiffness, "hysteresis": hysteresis}
+    sources: Mapping[str, str] = _tables()["sources"]
+    spread = {"spread": typical.UNITS_SPREAD} if table == "stiffness" else {}
+    entries: dict[str, Any] = {}
+    for key, number in keys.items():
+        if isinstance(number, str):
+            entries[key] = number
+        else:
+            value, unit = number
+            entries[key] = _entry(value, unit, sources[f"{table}.{key}"].format(**words)) | spread
+    return entries
 
 
 def _torsional_stiffness(gear: ListedGear) -> dict[str, float]:
     return _figures("torsional_stiffness")[min(gear.ratio, TOP_RATIO_COLUMN), gear.size]
 
 
-def _spring_source(gear: ListedGear, figure: str, value: str = "") -> str:
+def _spring_source(gear: ListedGear, figure: str, value: float) -> str:
+    """Return the source of a figure of the whole gear; it states the figures that the set has no number equal to."""
     is_torque = figure.startswith("T")
+    stated = {"K1": f" = {value / 1e3:g}e3 N.m/rad", "T1": f" = {value:g} N.m", "T2": f" = {value:g} N.m"}.get(figure, "")
     where = f"size {gear.size}" if is_torque else f"size {gear.size}, ratio {gear.ratio_column}"
     if gear.is_borrowed:
-        return f"assumed: {'torque' if is_torque else 'stiffness'} {figure}{value} of CSG {where}; {SHARED_BY_CSG}"
-    document_place = f"{_tables()['torsional_stiffness']['source']}{', torque' if is_torque else ''} {figure}{value}"
+        return f"assumed: {'torque' if is_torque else 'stiffness'} {figure}{stated} of CSG {where}; {SHARED_BY_CSG}"
+    in_table = f"{_tables()['torsional_stiffness']['source']}{', torque' if is_torque else ''} {figure}{stated}"
     of_series = "SHG " if gear.series == "SHG" else ""
-    return f"{document_place}, {of_series}{where}{gear.remark('torsional_stiffness', figure)}"
-
-
-def _kinematic_error(gear: ListedGear) -> dict[str, Any]:
-    bound = typical.transmission_accuracy(gear.size, gear.ratio)
-    sizes = "40 and 50, hence 45" if gear.size == 45 else gear.size  # CHA has none of size 45
-    amplitude_source = (
-        f"assumed: peak to peak half the bound on transmission accuracy (< {bound / typical.RAD_PER_ARCMIN:.3g} arcmin, CHA "
-        f"engineering data, size {sizes}, ratio {gear.ratio_column})"
-    )
-    return {
-        "model": "fourier",
-        "order": _entry([2.0], "1", "assumed: the two lobes of the wave generator; the catalogue gives no spectrum"),
-        "amplitude": _entry([rounded(0.25 * bound, 4)], "rad", amplitude_source),
-        "phase": _entry([0.0], "rad", "assumed: the wave generator angle counts from a zero of the error"),
-    }
-
-
-def _friction(gear: ListedGear) -> dict[str, Any]:
-    dry = rounded(typical.EXACT_STARTING_TORQUE * gear.size**3 / gear.ratio, 4)
-    viscous = rounded(typical.EXACT_VISCOUS_FRICTION * (gear.size / 20) ** 3, 4)
-    breakaway_source = "starting torque ~ size^3 / ratio through the catalogue figures of CSF-17-100 and CSF-25-50"
-    viscous_source = "~ size^3 through the no-load running torque of CPL-20-160 at 3500 rpm, 20 degC"
-    output_source = "none; no-load backdriving torque = ratio x starting torque, so the friction is at the input"
-    return {
-        "friction_input": {
-            "model": "coulomb",
-            "coulomb": _entry(dry, "N.m", "assumed: equal to breakaway; no measurement at hand tells the two apart"),
-            "breakaway": _entry(dry, "N.m", f"assumed: {breakaway_source}"),
-            "viscous": _entry(viscous, "N.m.s/rad", f"assumed: {viscous_source}"),
-        },
-        "friction_output": {"model": "viscous", "viscous": _entry(0.0, "N.m.s/rad", f"assumed: {output_source}")},
-    }
+    return f"{in_table}, {of_series}{where}{gear.remark('torsional_stiffness', figure)}"
 
 
 def _inertia(gear: ListedGear) -> tuple[float, str]:
@@ -208,7 +171,7 @@ def _ratings(gear: ListedGear) -> tuple[dict[str, Any], str]:
     table = _tables()["ratings"]
     ratings = {}
     for name, value in published.items():
-        source = f"{table['source']}, {RATING_WORDS[name]}, {gear.label}{gear.remark('ratings', name)}"
+        source = f"{table['source']}, {table['words'][name]}, {gear.label}{gear.remark('ratings', name)}"
         ratings[name] = _entry(value, "rpm" if name.endswith("speed") else "N.m", source)
     notes = [HOLLOW_SHAFT_NOTE] if gear.series == "SHG" else []
     return ratings, " ".join(notes + [text for text, labels in table["notes"].items() if gear.label in labels])
