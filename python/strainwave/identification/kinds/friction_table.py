@@ -41,7 +41,7 @@ from strainwave.identification.reading.roles import (
 from strainwave.identification.results.file_result import FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.identifiability import JudgedFit, with_friction_at
-from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.pictures import Picture
 from strainwave.identification.results.prediction import (
     Prediction,
     changes_of,
@@ -235,7 +235,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         name, file, best.name, estimates,
         (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table), *shaped.remarks),
         (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
-        pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
+        pictures=(Picture(fit.curves()[0], "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
             plain_error(experiment, best.fit.training), samples=len(experiment.torque),

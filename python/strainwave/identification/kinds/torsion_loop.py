@@ -36,7 +36,7 @@ from strainwave.identification.reading.roles import Column, ColumnRoles, measure
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit
-from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.pictures import Picture
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.typeset import percent
@@ -141,7 +141,7 @@ class Torsion(Kind):
                 *_of_error(gain_sigma, loop), *shaped.remarks,
             ),
             (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
-            pictures=(Picture(curves_of(fit), "loop", "torque" + _place(loop)),),
+            pictures=(Picture(fit.curves()[0], "loop", "torque" + _place(loop)),),
             held_out=_held_out(best),
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
         )  # fmt: skip
