@@ -122,7 +122,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     between = FileResult(name)
     if set(ENCODERS) <= set(recording.names):
         errors = _errors(file, recording, abs(start.kinematics.ratio))
-        between, known = between_encoders(prepared, judged, errors, known, name)
+        between, known = between_encoders(prepared, judged, estimates, errors, known, name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, name), *between.checks]
