@@ -63,6 +63,8 @@ def test_a_scope_of_twincat_with_one_time(tmp_path: Path) -> None:
         recognise(path)
     options = "--unit 'Motor position=counts/1048576' --unit 'Axis1.ActTorque=permille of NUMBER N.m'"
     assert options_of(asked.value) == [options]
+    (answer,) = asked.value.answers
+    assert answer.gives.endswith(f"input_torque to {np.abs(share).max():.3g} permille of NUMBER N.m")  # of no invented value
     units = {"Motor position": "counts/1048576", "Axis1.ActTorque": "permille of 0.4 N.m"}
     found = recognise(path, FileMapping(units=units))
     assert found.recording["input_angle"] == pytest.approx(RATIO * ANGLE, abs=1e-5)
