@@ -30,3 +30,7 @@ def test_the_plus_minus_of_every_number_contains_the_truth(name: str, truth: dic
     numbers = {each.estimate.path: each.estimate for each in found.parameters}
     for path, value in truth.items():
         assert abs(numbers[path].value - value) < 2.0 * numbers[path].sigma < 0.1 * value, path
+    (validation,) = found.gear_set.validation
+    low, high = validation.measured["output_torque"]
+    assert -26.0 < low < -15.0 < 15.0 < high < 26.0  # of gravity alone 22 N.m, at the ends of the motion
+    assert validation.measured.keys() == {"input_speed", "output_torque", "output_angle"}
