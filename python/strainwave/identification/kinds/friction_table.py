@@ -21,7 +21,7 @@ from strainwave.identification.checks.sizes import (
     levels_of_table,
     opposes_motion,
 )
-from strainwave.identification.checks.unexplained import explained, judged_shape
+from strainwave.identification.checks.unexplained import OVER_SPEED, explained, judged_shape
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
@@ -222,7 +222,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole, order = explained(best.fit, name), np.argsort(experiment.speed, kind="stable")
     left, varies = best.fit.residuals[0][order], float(np.std(experiment.torque))
-    shaped = judged_shape(left, {"the speed": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
+    shaped = judged_shape(left, {OVER_SPEED: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     fit, estimates = fitted.with_set_before(known)
     if any(each.why for each in estimates) and not whole.failed:

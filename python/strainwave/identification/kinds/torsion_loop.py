@@ -26,7 +26,7 @@ from strainwave.identification.candidates.torsion import (
 from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
-from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, explained, judged_shape
+from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, OVER_LOOP, explained, judged_shape
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
@@ -131,7 +131,7 @@ class Torsion(Kind):
         whole = explained(best.fit, name)
         shared, left = _shared(best, gear, loop, friction_measured), best.fit.residuals[0]
         varies = float(np.std(best.fit.experiment.measured))
-        shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
+        shaped = judged_shape(left, {OVER_LOOP: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         fit, estimates = fitted.with_set_before(known)
         gain_sigma = _gain_sigma(loop, gear)
