@@ -25,7 +25,7 @@ from strainwave.identification.candidates.motion_candidate import (
     with_rotor,
 )
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, best_delay, fit_plain, gravity_sigma, moving
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
@@ -208,7 +208,7 @@ def _left_over(best: MotionCandidate) -> tuple[Array, dict[str, Array], float]:
 
 
 def _shifts_by_shape(best: MotionCandidate, over: str) -> dict[str, float]:
-    """Return how far the numbers of a fit move if a torque with a shape over an abscissa is fitted too, by path."""
+    """Return how far the numbers of a fit move by a torque with a shape over an abscissa, as `_shifts_by`."""
     motion, ratio = best.log.motion, best.model.drive.gear.kinematics.ratio
     output, speed = motion.angle / ratio, motion.speed
     shapes = {
@@ -216,12 +216,35 @@ def _shifts_by_shape(best: MotionCandidate, over: str) -> dict[str, float]:
         OVER_SPEED: [speed * np.abs(speed), np.sign(speed) * np.sqrt(np.abs(speed))],
         OVER_TURN: [wave(order * motion.angle) for order in (1.0, 2.0) for wave in (np.sin, np.cos)],
     }[over]
+    return _shifts_by(best, shapes)
+
+
+def _shifts_by_late_effort(best: MotionCandidate) -> dict[str, float]:
+    """Return how far the numbers of a fit move by a delay that is too long to be fitted, as `_shifts_by`; empty without one."""
+    if not _is_too_late(best):
+        return {}
+    return _shifts_by(best, [np.gradient(best.log.whole(best.fit.parts[0].model, nuisances_of(best.fit)))])
+
+
+def _is_too_late(best: MotionCandidate) -> bool:
+    """True if plain least squares predicts best with the longest delay that is tried, and the model has none."""
+    late = abs(best_delay(best.log, best.model.drive)) > (MAX_DELAY_SAMPLES - 0.5) * best.log.motion.step
+    return late and not best.log.delayed
+
+
+def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, float]:
+    """Return how far the numbers of a fit move if shares of further series of the effort are fitted too, by path.
+
+    Args:
+        best: the fit of a log
+        series: on the grid of its motion, shape (m,) each
+    """
     problem, x = solved_problem(best.fit)
     weights = problem.weights(x)
     weight = float(weights[0].rows.item())
-    columns = np.hstack([problem.jacobian(x, weights), weight * motion.filtered(np.stack(shapes)).T])
+    columns = np.hstack([problem.jacobian(x, weights), weight * best.log.motion.filtered(np.stack(series)).T])
     of_priors, right = problem.prior_rows()
-    columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(shapes)))])])
+    columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(series)))])])
     left = np.concatenate([weight * problem.residuals(x)[0][0], right - of_priors @ x])
     shifts = solved(columns, left)
     return {plain(each.path): float(shift) for each, shift in zip(problem.plan.unknowns, shifts, strict=False)}
@@ -261,7 +284,12 @@ def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
 
 
 def _delay(best: MotionCandidate) -> Iterator[str]:
-    """Yield the sentence about a delay that was fitted."""
+    """Yield the sentence about a delay that was fitted, or that is too long to be fitted."""
+    if _is_too_late(best):
+        yield (
+            f"a delay of {best.log.effort} of {MAX_DELAY_SAMPLES} samples or more would fit better: it was "
+            "filtered, or another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
+        )
     for nuisance in best.fit.estimates:
         if nuisance.path == "delay":
             way = "behind" if nuisance.value > 0.0 else "ahead of"
@@ -420,7 +448,7 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
     spread, by_rotor = spread_by_blocks(best), slopes_by_rotor(best)
     residual, abscissae, varies = _left_over(best)
     shape_over = largest_shape(residual, abscissae, varies)
-    by_shape = _shifts_by_shape(best, shape_over) if shape_over else {}
+    moved_by = [*([_shifts_by_shape(best, shape_over)] if shape_over else []), _shifts_by_late_effort(best)]
     unknown = 0.0 if taken.motor_known else SHARE_OF_UNKNOWN_ROTOR * inertia_at_input(best)
     gravity = 0.0, 0.0  # and its standard deviation; it comes before its phase
     for estimate in best.fit.estimates:
@@ -431,7 +459,12 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             continue
         law = encoder if path == "load.gravity_phase" else ""
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
-        own = max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0), turned * unknown, by_shape.get(path, 0.0)
+        own = (
+            max(estimate.sigma, spread.get(path, 0.0)),
+            apart.get(path, 0.0),
+            turned * unknown,
+            *(each.get(path, 0.0) for each in moved_by),
+        )
         sigma = float(np.linalg.norm(own))
         if path == "load.gravity_torque" and not best.log.regressors:
             sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
