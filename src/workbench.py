@@ -44,7 +44,7 @@ MAX_PAGE = 600_000  # bytes, compressed by gzip
 def main(folder: Path, page: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     script = "\n".join((PARTS / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
-    script = f'"use strict";\n(() => {{\n{script}}})();\n'
+    script = f'"use strict";\n{script}'  # its names stay open to the pages of the studio
     plots, style_of_plots = uplot(folder)
     style = (PARTS / "style.css").read_text("utf-8") + style_of_plots
     policy = (

@@ -17,6 +17,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from math import isnan, nan
 from threading import Lock, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -30,6 +31,24 @@ Report: TypeAlias = Callable[[str, float], None]  # called with a stage and the 
 Progress: TypeAlias = bool | Report | None
 SHOWN_AFTER = 1.0  # s, that a call takes before its bar appears
 _shown = Lock()  # of the one bar that a terminal has: calls within a call show none
+_watcher: ContextVar[Report | None] = ContextVar("watcher", default=None)
+
+
+@contextmanager
+def watched_by(report: Report) -> Iterator[None]:
+    """Call a function in place of a bar for every call within that leaves `progress` to the terminal.
+
+    >>> stages = []
+    >>> with watched_by(lambda stage, share: stages.append(stage)), in_turn(None, 2) as turn:
+    ...     turn("first")
+    >>> stages
+    ['first']
+    """
+    token = _watcher.set(report)
+    try:
+        yield
+    finally:
+        _watcher.reset(token)
 
 
 @contextmanager
@@ -66,6 +85,9 @@ def _watched(progress: Progress) -> Iterator[Report | None]:
     """
     if callable(progress):
         yield progress
+        return
+    if progress is None and (watcher := _watcher.get()) is not None:
+        yield watcher
         return
     if not (progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress = {shortened(progress)} must be True, False, None, or a function of a stage and a share")

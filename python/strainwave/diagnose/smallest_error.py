@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import hypot, inf, pi, sqrt, tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -98,7 +99,10 @@ class SteadyRun:
 
     def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
         """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad]."""
-        law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
+        return self.with_law(kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase]))
+
+    def with_law(self, law: Any) -> Recording:
+        """Return the record of a run with a law of the kinematic error in place of the drive's own, after the run-in."""
         drive = self.drive.replace({ERROR_PATH: law})
         ratio = float(drive.gear.kinematics.ratio)
         output = self.speed / abs(ratio)
