@@ -88,4 +88,4 @@ def loop_sigma(gear_set: GearSet, torque: float) -> Array | None:
         deviations = np.sqrt(np.diag(own.array))
         correlation = own.array / np.outer(deviations, deviations)
         covariance[np.ix_(places, places)] = correlation * np.outer(sigma[places], sigma[places])
-    return np.sqrt(np.einsum("kp,pq,kq->k", slopes, covariance, slopes))
+    return np.asarray(np.sqrt(np.einsum("kp,pq,kq->k", slopes, covariance, slopes)))
