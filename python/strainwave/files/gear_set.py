@@ -142,8 +142,13 @@ class GearSet(Pictured):
 
     @property
     def origins(self) -> list[str]:
-        """Lines that state which numbers were identified, with ±, and the others; empty if none was."""
+        """Lines that state which numbers were identified, with ±, the others, and where; empty if none was."""
         return gear_file.origins(self)
+
+    @property
+    def measured_ranges(self) -> list[str]:
+        """Range of speed, torque, angle and temperature of each file that it was identified from, in words."""
+        return gear_file.measured_ranges(self)
 
     @property
     def left_out(self) -> frozenset[str]:

@@ -398,7 +398,9 @@ def test_a_covariance_and_the_errors_on_its_files_survive_writing(tmp_path: Path
     numbers, matrix = ("load.inertia", "gear.damping"), ((1e-4, -3e-5), (-3e-5, 0.1 + 0.2))
     validated = (
         Validation("a.csv", "log", "current", "A", 0.1, 0.5, 0.12, 0.4, -0.01, 2e-3, {"cos(2 + 3)": 1.25}),
-        Validation("b", "torsion", "q", "N.m", 0, 0, 0, 0),
+        Validation(
+            "b", "torsion", "q", "N.m", 0, 0, 0, 0, measured={"output_torque": (-3.0, 5.5), "temperature": (290.0, 290.0)}
+        ),
     )
     whole = whole_set().replace(covariance=Covariance(numbers, matrix), validation=validated)
     whole.save(tmp_path / "set.toml")
