@@ -29,7 +29,7 @@ from strainwave.workbench.schema import schema
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ROOT / "python" / "strainwave" / "workbench" / "page"
-SCRIPTS = ("model", "core", "curves", "fit", "plots", "form", "page")
+SCRIPTS = ("model", "toml", "gearfile", "core", "curves", "fit", "plots", "form", "cards", "page")
 COMPILER = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
 # The bits of a result are those of the compiled package: no contraction, and arithmetic in its order.
 FLAGS = (

@@ -197,6 +197,7 @@ ELSEWHERE = {
     "Pendulum": {
         "identification/results/drive.py": ALONE,
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
+        "identification/experiments/motion_log.py": "gravity acts at the measured angle of the output, behind the wind-up",
         "identification/kinds/between_encoders.py": "gravity of the load that was fitted, along the motion of the log",
         "identification/kinds/predicted_log.py": "gravity depends on where the angle of a log counts from",
     },

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_chec
 from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
 from strainwave.files import datasheet, gear_file, harmonic_drive
-from strainwave.files.described import all_paths, default_of, parts
+from strainwave.files.described import all_paths, default_of, is_required, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
 from strainwave.files.tables import FORMATS
@@ -142,8 +142,13 @@ class GearSet(Pictured):
 
     @property
     def origins(self) -> list[str]:
-        """Lines that state which numbers were identified, with ±, and the others; empty if none was."""
+        """Lines that state which numbers were identified, with ±, the others, and where; empty if none was."""
         return gear_file.origins(self)
+
+    @property
+    def measured_ranges(self) -> list[str]:
+        """Range of speed, torque, angle and temperature of each file that it was identified from, in words."""
+        return gear_file.measured_ranges(self)
 
     @property
     def left_out(self) -> frozenset[str]:
@@ -464,6 +469,8 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
     name, _, index = name.partition("[")
     model = attrgetter(place)(gear_set)
+    if is_required(model, name) and type(model) is not _default_type(gear_set, place):
+        return entry
     value, default = getattr(model, name), default_of(model, name)
     if index:
         number = int(index.removesuffix("]"))
@@ -471,6 +478,12 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     if value != default or entry.assumed:
         return entry
     return Entry(f"assumed: the default, unless given by: {entry.source}")
+
+
+def _default_type(gear_set: GearSet, place: str) -> type[Any]:
+    """Return the type of a part unless another one is given: that part alone has required numbers that nobody gave."""
+    holder, _, name = place.rpartition(".")
+    return type(default_of(attrgetter(holder)(gear_set) if holder else Drive, name))
 
 
 def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:

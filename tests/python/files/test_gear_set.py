@@ -248,6 +248,17 @@ def test_a_catalogue_set_becomes_a_drive_with_the_parts_it_lacks() -> None:
     assert other.sources["load.inertia"] == Entry("data sheet")
 
 
+def test_a_number_that_had_to_be_given_has_the_source_given_though_it_equals_the_order_of_magnitude_of_its_law() -> None:
+    """A gear that gives no stiffness has that of its default, whose number is required where one is given."""
+    stribeck = sw.friction.Stribeck(coulomb=0.03, breakaway=0.06, stribeck_speed=2.0)
+    for law, place in ((stribeck, ""), (sw.friction.Asymmetric(law=stribeck, dry_asymmetry=0.1), "law.")):
+        sources = GearSet.of(sw.Gear(friction_input=law), name="x", source="measured").sources
+        for name in ("coulomb", "breakaway", "stribeck_speed"):
+            assert sources[f"gear.friction_input.{place}{name}"] == Entry("measured")
+        assert sources[f"gear.friction_input.{place}viscous"] == Entry("assumed: the default, unless given by: measured")
+        assert sources["gear.stiffness.k"] == Entry("assumed: the default, unless given by: measured")
+
+
 def test_a_part_of_another_family_is_refused() -> None:
     with pytest.raises(
         TypeError,
@@ -387,7 +398,9 @@ def test_a_covariance_and_the_errors_on_its_files_survive_writing(tmp_path: Path
     numbers, matrix = ("load.inertia", "gear.damping"), ((1e-4, -3e-5), (-3e-5, 0.1 + 0.2))
     validated = (
         Validation("a.csv", "log", "current", "A", 0.1, 0.5, 0.12, 0.4, -0.01, 2e-3, {"cos(2 + 3)": 1.25}),
-        Validation("b", "torsion", "q", "N.m", 0, 0, 0, 0),
+        Validation(
+            "b", "torsion", "q", "N.m", 0, 0, 0, 0, measured={"output_torque": (-3.0, 5.5), "temperature": (290.0, 290.0)}
+        ),
     )
     whole = whole_set().replace(covariance=Covariance(numbers, matrix), validation=validated)
     whole.save(tmp_path / "set.toml")

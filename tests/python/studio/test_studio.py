@@ -240,7 +240,7 @@ def test_a_dropped_table_becomes_a_gear_that_the_page_opens(page: Page) -> None:
     page.ask(do="gear", values={"name": f"{job['id']}/gear.toml"})
     gear = page.told("gear")
     assert gear["drive"]["gear"]["friction_input"]["coulomb"] == pytest.approx(0.05, rel=5e-3)
-    assert gear["sigmas"]["gear.friction_input.coulomb"] > 0.0
+    assert gear["sources"]["gear.friction_input.coulomb"][2] > 0.0  # its standard deviation
 
 
 @pytest.mark.slow("report")
