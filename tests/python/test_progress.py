@@ -72,6 +72,22 @@ def test_a_call_within_a_call_has_no_bar_of_its_own(capfd: pytest.CaptureFixture
     assert "inner" not in capfd.readouterr().err
 
 
+def test_a_call_that_shows_nothing_silences_the_calls_within() -> None:
+    with in_turn(False):
+        assert not _is_shown()
+    with in_turn(lambda stage, share: None):
+        assert not _is_shown()
+
+
+def test_a_fit_tells_how_often_it_evaluated_the_model() -> None:
+    gear, speed = sw.load("hfuc-25-100"), [1.0, 5.0, 20.0, 50.0]
+    table = sw.Recording({"speed": speed, "torque": gear.friction_input.steady(speed)}, {"speed": "rad/s", "torque": "N.m"})
+    stages: list[str] = []
+    found = sw.fit(gear, table, ["friction_input.viscous"], progress=lambda stage, share: stages.append(stage))
+    assert stages == [f"fitting, evaluation {number + 1}" for number in range(len(stages))]
+    assert sw.fit(gear, table, ["friction_input.viscous"], progress=False) == found
+
+
 def _is_shown() -> bool:
     with by_count(True, "simulating", 2) as done:
         return done is not None

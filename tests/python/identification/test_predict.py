@@ -137,6 +137,22 @@ def test_a_table_of_friction_is_predicted_by_the_gear_alone() -> None:
     assert [each.name for each in found.changed] == ["dry friction"]
 
 
+def test_the_recording_that_the_gear_came_from_is_no_evidence(tmp_path: Path) -> None:
+    for name, seed in (("first", 0), ("later", 1)):
+        torque = 0.05 + 3e-4 * SPEED + 1e-4 * np.random.default_rng(seed).standard_normal(len(SPEED))
+        sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}).to_csv(tmp_path / f"{name}.csv")
+    sw.identify("csg-20-100", [tmp_path / "first.csv"]).gear_set.save(tmp_path / "gear.toml")
+    shutil.copy(tmp_path / "first.csv", tmp_path / "copy.csv")
+    names = [tmp_path / f"{name}.csv" for name in ("copy", "later")]
+    copy, later = sw.predict(tmp_path / "gear.toml", names)
+    assert (copy.verdict, copy.same_as) == ("no evidence", "first.csv")
+    assert verdict_sentence(copy).startswith("copy.csv is no evidence: ")
+    assert "was identified from this recording as first.csv; " in verdict_sentence(copy)
+    assert (later.verdict, later.same_as) == ("agrees", "")
+    (unknown,) = sw.predict(sw.GearSet.read(tmp_path / "gear.toml").gear, names[:1])  # a gear that names no files
+    assert (unknown.verdict, unknown.same_as) == ("agrees", "")
+
+
 def test_the_uncertainty_of_the_saved_numbers_is_part_of_that_of_a_change() -> None:
     gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05, breakaway=0.05, viscous=3e-4))
     sure = GearSet.of(gear, name="joint", source="measured")
