@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from strainwave.progress import by_count, in_turn
+from strainwave.progress import by_count, in_turn, watched_by
 
 LOOP = """
 import time
@@ -77,6 +77,15 @@ def test_a_call_that_shows_nothing_silences_the_calls_within() -> None:
         assert not _is_shown()
     with in_turn(lambda stage, share: None):
         assert not _is_shown()
+
+
+def test_a_watcher_hears_of_the_outermost_call_alone() -> None:
+    stages: list[str] = []
+    with watched_by(lambda stage, share: stages.append(stage)), in_turn(None) as outer:
+        outer("a file")
+        with in_turn(None) as inner:
+            inner("a fit of it")
+    assert stages == ["a file"]
 
 
 def test_a_fit_tells_how_often_it_evaluated_the_model() -> None:
