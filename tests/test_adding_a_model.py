@@ -100,6 +100,10 @@ ELSEWHERE = {
         "structure/staged.hpp": "what its springs do where nothing else is said",
     },
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
+    "TemperatureDependent": {
+        "parameter_drive.hpp": BOUND_TO_ANY,
+        "orders/over_temperature.py": "fitted to records at several temperatures",
+    },
     "Viscous": {
         "identification/experiments/friction_table.py": "by which a place without friction is known",
     },

@@ -143,6 +143,15 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             depth_sensitivity=100.0,
         )
     },
+    "temperature_dependent": {
+        "kinematic_error": sw.kinematic_error.TemperatureDependent(
+            law=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.3, -1.0]),
+            order=[2.0, 2.02],
+            change=[2e-6, 1e-6],
+            phase=[0.5, 1.0],
+            temperature=313.15,
+        )
+    },
     "backlash": {"stiffness": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=5e-5)},
     "frictional_windup": {
         "hysteresis": sw.hysteresis.FrictionalWindup(springs=made(sw.stiffness.MultiCompliance, reduction=100.0), friction=0.3),
