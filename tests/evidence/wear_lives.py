@@ -1,13 +1,13 @@
 """Coverage of the remaining life of worn gears: `python -m tests.evidence.wear_lives`.
 
-50 fleets of six gears. A gear wears by an independent program: at each of its tooth pairs the depth grows by the load of the pair
-times its sliding distance (Archard 1953), over cycles of random torque and stroke, which differ from gear to gear and from block
-to block. Play at the output is the depth of both flanks over the radius; the wave of order 2 grows by a share of it. The duty is
-recorded, and `transmitted_work` integrates it.
+50 fleets of six gears. A gear wears by an independent program: at each of its tooth pairs the depth grows by the load of the
+pair times its sliding distance (Archard 1953), over cycles of random torque and stroke, which differ from block to block. Play
+at the output is the depth of both flanks over the radius; the wave of order 2 grows by a share of it. The duty is recorded,
+and `transmitted_work` integrates it.
 
-Before each test the rig is set up anew: lost motion and amplitude differ by that. A test is a record of two encoders with noise,
-which `transmission_error` evaluates. `wear_life` fits the tests of a gear, and the interval of its life is compared with the work
-at which the first of both quantities passes its limit.
+Before each test the rig is set up anew: lost motion and amplitude differ by that. A test is a record of two encoders with
+noise, which `transmission_error` evaluates. `wear_life` fits the tests of a gear, and the interval of its life is compared with
+the work at which the first of both quantities passes its limit.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class Gear:
     random: np.random.Generator
 
     def __post_init__(self) -> None:
-        self.coefficient = 4e-13 * float(np.exp(self.random.normal(0.0, 0.4)))  # m of depth per N·m, of a pair
+        self.coefficient = 2e-9 * float(np.exp(self.random.normal(0.0, 0.4)))  # m of depth per N·m, of a pair
         self.wave_share = float(self.random.uniform(*WAVE_SHARE))
         self.depth, self.work = 0.0, 0.0
 
@@ -116,7 +116,8 @@ def main() -> None:
     print(f"determined {np.mean(determined):.1%}, of these it contains the true life: {np.mean(covered[determined]):.1%}")
     for tests in sorted(set(counts.tolist())):
         own = counts == tests
-        print(f"  {tests} tests: {np.sum(own)} gears, contains {np.mean(covered[own]):.0%}, determined {np.mean(determined[own]):.0%}")
+        shares = f"contains {np.mean(covered[own]):.0%}, determined {np.mean(determined[own]):.0%}"
+        print(f"  {tests} tests: {np.sum(own)} gears, {shares}")
     shares = [np.mean(covered[fleets == fleet]) for fleet in range(options.fleets)]
     print(f"fleets whose first gear is covered: {np.mean(covered[::GEARS]):.0%}; worst fleet {min(shares):.0%}")
 

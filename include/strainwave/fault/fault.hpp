@@ -49,9 +49,9 @@ constexpr Change<S> add_wave(const char* place, const char* law, const S& order,
 }
 
 /// Every name that a law of friction has for a dry level or a loss per torque.
-inline constexpr Array<const char*, 14> dry_quantities{
-    {"coulomb", "breakaway", "quadratic", "linear", "constant", "cosine", "sine", "level", "driving_forward", "driving_reverse",
-     "backdriving_forward", "backdriving_reverse", "average_loss", "difference_loss"}};
+inline constexpr Array<const char*, 14> dry_quantities{{"coulomb", "breakaway", "quadratic", "linear", "constant", "cosine", "sine",
+                                                        "level", "driving_forward", "driving_reverse", "backdriving_forward",
+                                                        "backdriving_reverse", "average_loss", "difference_loss"}};
 /// Every name that a law of stiffness has for a stiffness, or for a coefficient in proportion to it.
 inline constexpr Array<const char*, 8> stiffness_quantities{
     {"k", "k1", "k2", "k3", "a1", "a3", "flexspline_stiffness", "wave_generator_stiffness"}};

@@ -15,7 +15,7 @@ struct ToothWear {
 
     static constexpr auto name = "tooth_wear";
     static constexpr auto mode = "Wear of the teeth of a spline";
-    static constexpr auto effect = "play between the teeth, kinematic error that repeats with the worn teeth, friction of the mesh, stiffness";
+    static constexpr auto effect = "play, kinematic error that repeats with the worn teeth, friction of the mesh, lower stiffness";
     static constexpr auto signal =
         "lost motion; order 2 or 2 z_c / z_f of the input (2 z_f / z_c with the flexspline fixed) in output position and current";
     static constexpr auto source = "order: kinematics of the three members; play and amplitude are assumed (1 and 0.5 arc minutes)";
@@ -46,7 +46,8 @@ struct ToothWear {
         visit(SW_FIELD(m, play, "rad", "Play Delta c at the output, from flank to flank, at severity 1", 0));
         visit(SW_FIELD(m, amplitude, "rad", "Amplitude A of the wave of kinematic error at the output, at severity 1", 0));
         visit(SW_FIELD(m, phase, "rad", "Phase phi of that wave"));
-        visit(SW_FIELD(m, friction_rise, "1", "Rise r of dry friction at the mesh at severity 1, relative to the healthy drive", 0));
+        visit(
+            SW_FIELD(m, friction_rise, "1", "Rise r of dry friction at the mesh at severity 1, relative to the healthy drive", 0));
         visit(SW_FIELD(m, softening, "1", "Share f of the stiffness that is lost at severity 1", 0, 0.95));
         visit(SW_FIELD(m, spline, "1", "The spline whose teeth are worn"));
     }

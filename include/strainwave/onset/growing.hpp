@@ -11,7 +11,8 @@ struct Growing {
     Unit unit{Unit::output_revolutions};
 
     static constexpr auto name = "growing";
-    static constexpr auto source = "assumed: a power of the use since the beginning; the exponent is the user's; Archard1953 for wear by transmitted work";
+    static constexpr auto source =
+        "assumed: a power of the use since the beginning; the exponent is the user's; Archard1953 for wear by transmitted work";
     static constexpr auto doc = R"(
         Fault that grows as a power of the use of the drive.
 

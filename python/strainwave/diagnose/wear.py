@@ -24,7 +24,7 @@ from strainwave.presentation import Presented, Row
 
 Array = NDArray[np.float64]
 
-QUANTITY_UNITS = {"play": "rad", "amplitude": "rad", "friction": "N.m", "stiffness": "N.m/rad"}  # that `fault.ToothWear` changes
+QUANTITY_UNITS = {"play": "rad", "amplitude": "rad", "friction": "N.m", "stiffness": "N.m/rad"}  # of ToothWear
 MIN_TESTS = 3  # of which a line leaves one degree of freedom for its noise
 MAX_SOFTENING = 0.95  # of `fault.ToothWear`
 
@@ -197,7 +197,7 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         if len(values) != len(work):
             raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for each")
     if len(work) < MIN_TESTS:
-        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests or more; there are {len(work)}: test again")
+        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests; there are {len(work)}: test again")
     if float(np.ptp(work)) == 0.0:
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
 

@@ -48,6 +48,16 @@ class OrderOverTemperature(Presented):
     false_alarm: float
     significant: bool
 
+    @property
+    def change(self) -> float:
+        """Amplitude of the change per kelvin, of amplitude and phase together [rad/K]."""
+        return float(np.hypot(self.amplitude_rate, self.amplitude * self.phase_rate))
+
+    @property
+    def change_sigma(self) -> float:
+        """Standard deviation of `change`, the larger one of both directions [rad/K]."""
+        return max(self.amplitude_rate_sigma, self.amplitude * self.phase_rate_sigma)
+
 
 @dataclass(frozen=True)
 class ErrorOverTemperature(Presented):
@@ -78,7 +88,7 @@ class ErrorOverTemperature(Presented):
                 phase=[each.phase for each in kept],
             ),
             order=[each.order for each in changed],
-            change=[abs(wave) for wave in waves],
+            change=[each.change for each in changed],
             phase=[each.phase + float(np.angle(wave)) for each, wave in zip(changed, waves, strict=True)],
             temperature=self.reference_temperature,
             reference_temperature=self.reference_temperature,
@@ -168,7 +178,8 @@ def _line(lines: Sequence[ErrorOrder], warmer: Array, count: int, allowed: float
     amplitude, phase = float(np.hypot(*values[:2])), float(np.arctan2(values[1], values[0]))
     along = np.array([np.cos(phase), np.sin(phase)])
     across = np.array([-along[1], along[0]])
-    sigmas = [float(np.sqrt(way @ block @ way)) for block in (covariance[:2, :2], covariance[2:, 2:]) for way in (along, across)]
+    blocks = covariance[:2, :2], covariance[2:, 2:]
+    sigmas = [float(np.sqrt(way @ block @ way)) for block in blocks for way in (along, across)]
     square = float(values[2:] @ np.linalg.solve(covariance[2:, 2:], values[2:]))
     alarm = (1.0 + square / freedom) ** (-0.5 * freedom) if birge > 1.0 else float(np.exp(-0.5 * square))
     alarm = min(1.0, count * alarm)
