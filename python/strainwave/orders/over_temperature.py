@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from math import isclose, tau
+from dataclasses import dataclass, replace
+from math import inf, isclose, isfinite, tau
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,8 +18,16 @@ Array = NDArray[np.float64]
 
 SAME_ORDER = 1e-3  # relative difference of one order in two records, whose measured ratios differ a little
 UNKNOWNS = 4  # of an order: sine and cosine part, and their changes
-MEASURED_TWICE = "two records do not test the line: whatever else differs between them counts as temperature; add a third"
-SAME_ZERO = "phases are comparable if the zero of the input encoder was the same in all records"
+MIN_PROBABILITY = 1e-3  # of the scatter about straight lines: a smaller one means that they do not explain the phases
+SAME_ZERO = "straight lines explain the phases, as of an input encoder that kept its zero"
+MEASURED_TWICE = (
+    "two records do not separate a change of phase from another zero of the input encoder, and do not test the line of the "
+    "amplitudes: add a third"
+)
+OTHER_ZERO = (
+    "straight lines do not explain the records: phases are not compared, as if the input encoder had changed its zero; the "
+    "change of amplitudes counts with its scatter"
+)
 
 
 @dataclass(frozen=True)
@@ -31,7 +39,7 @@ class OrderOverTemperature(Presented):
         amplitude, amplitude_sigma: of it at the output [rad], and its standard deviation
         phase, phase_sigma: of it [rad], as of a sine
         amplitude_rate, amplitude_rate_sigma: change of the amplitude [rad/K]
-        phase_rate, phase_rate_sigma: change of the phase [rad/K]
+        phase_rate, phase_rate_sigma: change of the phase [rad/K]; 0 with an infinite deviation if phases are not comparable
         false_alarm: probability that noise alone gives as much change in any of the orders
         significant: True if that is less than allowed
     """
@@ -56,7 +64,8 @@ class OrderOverTemperature(Presented):
     @property
     def change_sigma(self) -> float:
         """Standard deviation of `change`, the larger one of both directions [rad/K]."""
-        return max(self.amplitude_rate_sigma, self.amplitude * self.phase_rate_sigma)
+        across = self.amplitude * self.phase_rate_sigma
+        return max(self.amplitude_rate_sigma, across) if isfinite(across) else self.amplitude_rate_sigma
 
 
 @dataclass(frozen=True)
@@ -114,10 +123,12 @@ def error_over_temperature(
 
     The sine and the cosine part of each order are straight lines over the temperature, fitted by least squares with the
     standard deviations of the records. If the records scatter by more than those, the standard deviations are larger by their
-    ratio (Birge1932), and the changes are judged by this scatter.
+    ratio (Birge1932), and the changes are judged by this scatter. Another zero of the input encoder turns all phases, as a
+    change with the temperature does: of two records, or if straight lines do not explain the phases, amplitudes alone are
+    compared, and the phase is that of the first record.
 
     Args:
-        errors: results of `sw.transmission_error` of one gear, each at one temperature, whose encoders kept their zero
+        errors: results of `sw.transmission_error` of one gear, each at one temperature
         temperatures: of the gear in each record [K], shape (n,)
         false_alarm: largest probability that noise makes the change of any order significant
 
@@ -146,8 +157,12 @@ def error_over_temperature(
     allowed = arguments.probability("false_alarm", false_alarm)
     reference = float(np.mean(degrees))
     common = list(_common(errors))
-    orders = tuple(_line(lines, degrees - reference, len(common), allowed) for lines in common)
-    remarks = [SAME_ZERO, *([MEASURED_TWICE] if len(set(degrees.tolist())) == 2 else [])]
+    fitted = [_fitted(lines, degrees - reference) for lines in common]
+    comparable = _explains_phases(fitted)
+    if not comparable:
+        fitted = [_fitted(_of_one_phase(lines), degrees - reference) for lines in common]
+    orders = tuple(line.result(len(common), allowed, comparable) for line in fitted)
+    remarks = [SAME_ZERO if comparable else MEASURED_TWICE if len(errors) == 2 else OTHER_ZERO]
     remarks += [f"record {place}: {each.speeds}" for place, each in enumerate(errors, 1) if each.vibrates]
     return ErrorOverTemperature(orders, reference, tuple(degrees.tolist()), tuple(remarks))
 
@@ -167,35 +182,68 @@ def _common(errors: Sequence[TransmissionError]) -> Iterator[list[ErrorOrder]]:
             yield lines
 
 
-def _line(lines: Sequence[ErrorOrder], warmer: Array, count: int, allowed: float) -> OrderOverTemperature:
-    """Return one order over the temperature, one of `count` that are judged together."""
+@dataclass(frozen=True)
+class _Line:
+    """Sine and cosine part of one order, and their changes per kelvin: fitted values, covariance and squares left."""
+
+    lines: Sequence[ErrorOrder]
+    values: Array
+    covariance: Array
+    squares: float
+
+    @property
+    def freedom(self) -> int:
+        return 2 * len(self.lines) - UNKNOWNS
+
+    def result(self, count: int, allowed: float, comparable: bool) -> OrderOverTemperature:
+        """Return the order, one of `count` that are judged together, with its phase only if phases are comparable."""
+        birge = max(1.0, self.squares / self.freedom) if self.freedom else 1.0
+        covariance = birge * self.covariance
+        amplitude, phase = float(np.hypot(*self.values[:2])), float(np.arctan2(self.values[1], self.values[0]))
+        along = np.array([np.cos(phase), np.sin(phase)])
+        across = np.array([-along[1], along[0]])
+        blocks = covariance[:2, :2], covariance[2:, 2:]
+        sigmas = [float(np.sqrt(way @ block @ way)) for block in blocks for way in (along, across)]
+        rate, turn = float(along @ self.values[2:]), float(across @ self.values[2:])
+        square = (rate / sigmas[2]) ** 2
+        if comparable:
+            square = float(self.values[2:] @ np.linalg.solve(covariance[2:, 2:], self.values[2:]))
+        alarm = (1.0 + square / self.freedom) ** (-0.5 * self.freedom) if birge > 1.0 else float(np.exp(-0.5 * square))
+        alarm = min(1.0, count * alarm)
+        return OrderOverTemperature(
+            order=self.lines[0].order,
+            amplitude=amplitude,
+            amplitude_sigma=sigmas[0],
+            phase=phase,
+            phase_sigma=min(sigmas[1] / amplitude, tau),
+            amplitude_rate=rate,
+            amplitude_rate_sigma=sigmas[2],
+            phase_rate=turn / amplitude if comparable else 0.0,
+            phase_rate_sigma=sigmas[3] / amplitude if comparable else inf,
+            false_alarm=alarm,
+            significant=alarm < allowed,
+        )
+
+
+def _fitted(lines: Sequence[ErrorOrder], warmer: Array) -> _Line:
+    """Return the straight lines of one order by least squares."""
     rows = np.concatenate([_parts(line, step) for line, step in zip(lines, warmer, strict=True)])
     goal = np.concatenate([[line.amplitude / line.amplitude_sigma, 0.0] for line in lines])
     values = solved(rows, goal)
-    freedom, left = len(goal) - UNKNOWNS, goal - rows @ values
-    birge = max(1.0, float(left @ left) / freedom) if freedom else 1.0
-    covariance = birge * np.linalg.inv(rows.T @ rows)
-    amplitude, phase = float(np.hypot(*values[:2])), float(np.arctan2(values[1], values[0]))
-    along = np.array([np.cos(phase), np.sin(phase)])
-    across = np.array([-along[1], along[0]])
-    blocks = covariance[:2, :2], covariance[2:, 2:]
-    sigmas = [float(np.sqrt(way @ block @ way)) for block in blocks for way in (along, across)]
-    square = float(values[2:] @ np.linalg.solve(covariance[2:, 2:], values[2:]))
-    alarm = (1.0 + square / freedom) ** (-0.5 * freedom) if birge > 1.0 else float(np.exp(-0.5 * square))
-    alarm = min(1.0, count * alarm)
-    return OrderOverTemperature(
-        order=lines[0].order,
-        amplitude=amplitude,
-        amplitude_sigma=sigmas[0],
-        phase=phase,
-        phase_sigma=min(sigmas[1] / amplitude, tau),
-        amplitude_rate=float(along @ values[2:]),
-        amplitude_rate_sigma=sigmas[2],
-        phase_rate=float(across @ values[2:]) / amplitude,
-        phase_rate_sigma=sigmas[3] / amplitude,
-        false_alarm=alarm,
-        significant=alarm < allowed,
-    )
+    return _Line(lines, values, np.linalg.inv(rows.T @ rows), float(np.sum((goal - rows @ values) ** 2)))
+
+
+def _explains_phases(fitted: Sequence[_Line]) -> bool:
+    """True if straight lines explain three records or more within their standard deviations."""
+    from scipy.special import chdtrc
+
+    freedom = sum(line.freedom for line in fitted)
+    return freedom > 0 and bool(chdtrc(freedom, sum(line.squares for line in fitted)) > MIN_PROBABILITY)
+
+
+def _of_one_phase(lines: Sequence[ErrorOrder]) -> list[ErrorOrder]:
+    """Return the lines with the phase of the first record: only their amplitudes are compared."""
+    return [replace(line, phase=lines[0].phase) for line in lines]
 
 
 def _parts(line: ErrorOrder, warmer: float) -> Array:

@@ -98,7 +98,7 @@ def test_transmitted_work_is_that_of_a_sine_under_gravity() -> None:
 @pytest.mark.parametrize(
     ("work", "tests", "limits", "why"),
     [
-        ([0.0, 1.0], {"play": [1.0, 2.0]}, {"play": 3.0}, "need 3 tests or more"),
+        ([0.0, 1.0], {"play": [1.0, 2.0]}, {"play": 3.0}, "need 3 tests; there are 2"),
         ([1.0, 1.0, 1.0], {"play": [1.0, 2.0, 3.0]}, {"play": 3.0}, "all tests are after the same work, 1 J"),
         ([0.0, 1.0, 2.0], {"wobble": [1.0, 2.0, 3.0]}, {"wobble": 3.0}, "give one or more of play, amplitude, friction"),
         ([0.0, 1.0, 2.0], {}, {}, "tests has the quantities none"),

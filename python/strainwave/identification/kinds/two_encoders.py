@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
@@ -56,13 +57,12 @@ class TwoEncoders(Kind):
         errors = transmission_error(file.recording, ratio=given, ratio_option=RATIO_OPTION)
         name = file.path.name
         remarks, pictures = (*file.remarks, *errors.remarks), (picture_of_turn(errors), Picture(curves_of_orders(errors)))
-        result = FileResult(
-            name, file, "orders of the input", tuple(_at_its_temperature(file, errors)), remarks, pictures=pictures
-        )
+        estimates = tuple(_at_its_temperature(file, errors))
+        result = FileResult(name, file, "orders of the input", estimates, remarks, pictures=pictures)
         return result, with_error(known, errors, name)
 
     def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
-        """Fit the kinematic error over the temperature, if the files were recorded at more than one."""
+        """Fit the kinematic error over the temperature, if the temperatures of the files differ enough."""
         measured_at = list[tuple[Recognised, float, TransmissionError]]()
         for file in files:
             if np.isfinite(degrees := temperature_of(file)):
@@ -70,14 +70,13 @@ class TwoEncoders(Kind):
                     errors = transmission_error(file.recording, ratio=file.constants.get("ratio"), ratio_option=RATIO_OPTION)
                     measured_at.append((file, degrees, errors))
         degrees = [at for _, at, _ in measured_at]
-        if len(set(degrees)) < 2:
+        if not degrees or np.ptp(degrees) < MIN_TEMPERATURE_SPAN:
             return (), known
         found = error_over_temperature([errors for *_, errors in measured_at], degrees)
         names = [file.path.name for file, *_ in measured_at]
-        by_others = {
-            path for path, file in known.determined_by.items() if is_of(path, {"kinematic_error"}) and file not in names
-        }
-        after = known if by_others or not found.orders else with_error_over_temperature(known, found, names)
+        determined_by = {file for path, file in known.determined_by.items() if is_of(path, {"kinematic_error"})}
+        is_own = bool(found.orders) and determined_by <= set(names)
+        after = with_error_over_temperature(known, found, names) if is_own else known
         return (result_over_temperature(found, names),), after
 
 
