@@ -26,18 +26,17 @@ struct TemperatureDependent {
 
         .. math:: e(\theta, T) = e_0(\theta) + (T - T_0) \sum_h a_h \sin(B_h \theta + \psi_h)
 
-        with theta the input angle, e_0 the error of ``law`` at T_0 = reference_temperature, T = temperature, a_h = change, B_h =
-        order, psi_h = phase; up to 16 harmonics. A harmonic of ``law`` of the same order, with amplitude A and phase phi, changes
-        to first order by a_h cos(psi_h - phi) (T - T_0) in amplitude and by a_h sin(psi_h - phi) (T - T_0) / A in phase. The sine
-        and the cosine part are exactly linear in T, as of sources of error that add up, some of which grow with the expansion of
-        the parts. Valid over the range of temperatures at which the error was measured.
+        with theta the input angle, e_0 the error of ``law`` at T_0 = reference_temperature, T = temperature, a_h = change,
+        B_h = order, psi_h = phase; up to 16 harmonics. A harmonic of ``law`` of the same order, with amplitude A and phase phi,
+        changes to first order by a_h cos(psi_h - phi) (T - T_0) in amplitude and by a_h sin(psi_h - phi) (T - T_0) / A in
+        phase. The sine and the cosine part are exactly linear in T, as of sources of error that add up, some of which grow with
+        the expansion of the parts. Valid over the range of temperatures at which the error was measured.
 
         ``temperature`` is a number of the gear: the temperature of a run, which friction follows, does not change it. Set both.
         No catalogue gives the rates; ``sw.orders.error_over_temperature`` fits them to records at several temperatures.
 
         >>> from strainwave.kinematic_error import Fourier, TemperatureDependent
-        >>> cold = Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
-        >>> law = TemperatureDependent(law=cold, order=[2], change=[2e-6], phase=[0.0], reference_temperature=293.15)
+        >>> law = TemperatureDependent(law=Fourier(order=[2], amplitude=[3e-4], phase=[0]), order=[2], change=[2e-6], phase=[0])
         >>> round(law.slope(0.0), 9), round(law.replace(temperature=323.15).slope(0.0), 9)
         (0.0006, 0.00072))";
 

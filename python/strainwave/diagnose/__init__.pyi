@@ -27,7 +27,6 @@ from .misalignment_sweep import (
 from .smallest_error import DetectionLimit as DetectionLimit, detection_limit as detection_limit
 from .wear import (
     WearLife as WearLife,
-    WearTrend as WearTrend,
     transmitted_work as transmitted_work,
     wear_life as wear_life,
 )

@@ -85,6 +85,10 @@ class WearLife(Presented):
         remaining: work from the last test until then [J]; infinite if it is not determined
         low, high: ends of the interval that contains the true one with probability 0.95 or more [J]
         remarks: what is not determined, in words
+
+    >>> life = wear_life([0.0, 1e6, 2e6, 3e6], {"play": [1.0e-4, 1.31e-4, 1.58e-4, 1.92e-4]}, {"play": 4e-4})
+    >>> round(life.onset.share(life.onset.scale / 2.0), 2), life.limited_by
+    (0.5, 'play')
     """
 
     trends: tuple[WearTrend, ...]
