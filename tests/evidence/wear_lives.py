@@ -116,8 +116,8 @@ def main() -> None:
     print(f"determined {np.mean(determined):.1%}, of these it contains the true life: {np.mean(covered[determined]):.1%}")
     for tests in sorted(set(counts.tolist())):
         own = counts == tests
-        shares = f"contains {np.mean(covered[own]):.0%}, determined {np.mean(determined[own]):.0%}"
-        print(f"  {tests} tests: {np.sum(own)} gears, {shares}")
+        words = f"contains {np.mean(covered[own]):.0%}, determined {np.mean(determined[own]):.0%}"
+        print(f"  {tests} tests: {np.sum(own)} gears, {words}")
     shares = [np.mean(covered[fleets == fleet]) for fleet in range(options.fleets)]
     print(f"fleets whose first gear is covered: {np.mean(covered[::GEARS]):.0%}; worst fleet {min(shares):.0%}")
 

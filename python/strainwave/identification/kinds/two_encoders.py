@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,9 @@ from strainwave.messages import listed
 from strainwave.orders.over_temperature import ErrorOverTemperature, error_over_temperature
 from strainwave.orders.two_encoders import WHY_AMPLITUDES_CHANGE, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
+
+if TYPE_CHECKING:
+    from strainwave import kinematic_error
 
 Array = NDArray[np.float64]
 OVER_TEMPERATURE = "kinematic error over the temperature"
@@ -65,14 +68,14 @@ class TwoEncoders(Kind):
         """Fit the kinematic error over the temperature, if the temperatures of the files differ enough."""
         measured_at = list[tuple[Recognised, float, TransmissionError]]()
         for file in files:
-            if np.isfinite(degrees := temperature_of(file)):
+            if np.isfinite(temperature := temperature_of(file)):
                 with suppress(ValueError):  # one that cannot be used, as its own result states
                     errors = transmission_error(file.recording, ratio=file.constants.get("ratio"), ratio_option=RATIO_OPTION)
-                    measured_at.append((file, degrees, errors))
-        degrees = [at for _, at, _ in measured_at]
-        if not degrees or np.ptp(degrees) < MIN_TEMPERATURE_SPAN:
+                    measured_at.append((file, temperature, errors))
+        temperatures = [at for _, at, _ in measured_at]
+        if not temperatures or np.ptp(temperatures) < MIN_TEMPERATURE_SPAN:
             return (), known
-        found = error_over_temperature([errors for *_, errors in measured_at], degrees)
+        found = error_over_temperature([errors for *_, errors in measured_at], temperatures)
         names = [file.path.name for file, *_ in measured_at]
         determined_by = {file for path, file in known.determined_by.items() if is_of(path, {"kinematic_error"})}
         is_own = bool(found.orders) and determined_by <= set(names)
@@ -103,14 +106,14 @@ def temperature_of(file: Recognised) -> float:
 
 def with_error_over_temperature(known: GearSoFar, found: ErrorOverTemperature, names: Sequence[str]) -> GearSoFar:
     """Return the set with a kinematic error that depends on the temperature, or its mean if no order changes."""
-    law: Any = found.law if found.law.order else found.law.law
-    inner = "law." if found.law.order else ""
+    whole, mean = found.law, cast("kinematic_error.Fourier", found.law.law)
+    law, inner = (whole, "law.") if whole.order else (mean, "")
     by_order = {each.order: each for each in found.orders}
     sigmas = {}
-    for i, order in enumerate(found.law.law.order):
+    for i, order in enumerate(mean.order):
         sigmas[f"gear.kinematic_error.{inner}amplitude[{i}]"] = by_order[order].amplitude_sigma
         sigmas[f"gear.kinematic_error.{inner}phase[{i}]"] = by_order[order].phase_sigma
-    for i, (order, change) in enumerate(zip(found.law.order, found.law.change, strict=True)):
+    for i, (order, change) in enumerate(zip(whole.order, whole.change, strict=True)):
         sigmas[f"gear.kinematic_error.change[{i}]"] = by_order[order].change_sigma
         sigmas[f"gear.kinematic_error.phase[{i}]"] = by_order[order].change_sigma / change
     return known.with_parts({"kinematic_error": law}, sigmas, listed(names))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -82,7 +83,7 @@ def test_files_at_several_temperatures_determine_how_the_error_changes(tmp_path:
     assert not found.failed
     (change,) = (each.estimate for each in found.parameters if "change" in each.estimate.path)
     assert abs(change.value - 2e-6) < 3.5 * change.sigma
-    law = found.accepted.gear.kinematic_error
+    law: Any = found.accepted.gear.kinematic_error
     assert law.reference_temperature == pytest.approx(303.15)
     angle = np.linspace(0.0, 6.0, 100)
     assert law.replace(temperature=323.15).error(angle) == pytest.approx(3.6e-4 * np.sin(2.0 * angle + 0.3), abs=4e-6)
@@ -99,5 +100,5 @@ def test_files_at_one_temperature_determine_no_change(tmp_path: Path) -> None:
 
 def test_an_error_that_does_not_change_stays_one_law_of_all_files(tmp_path: Path) -> None:
     files = [recorded(tmp_path, degrees, place, 0.0) for place, degrees in enumerate((10.0, 30.0, 50.0))]
-    error = sw.identify("csg-20-100", files).accepted.gear.kinematic_error
+    error: Any = sw.identify("csg-20-100", files).accepted.gear.kinematic_error
     assert (error.name, error.amplitude) == ("fourier", pytest.approx([3e-4], abs=1e-6))
