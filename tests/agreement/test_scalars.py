@@ -143,6 +143,9 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             depth_sensitivity=100.0,
         )
     },
+    "asymmetric_spring": {
+        "stiffness": sw.stiffness.Asymmetric(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), negative_factor=0.8),
+    },
     "backlash": {"stiffness": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=5e-5)},
     "frictional_windup": {
         "hysteresis": sw.hysteresis.FrictionalWindup(springs=made(sw.stiffness.MultiCompliance, reduction=100.0), friction=0.3),
