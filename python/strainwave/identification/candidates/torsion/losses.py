@@ -57,7 +57,7 @@ END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
 RATE_DEGREE = 5  # of the polynomial in time of one way: half a period of a sine to 1e-4
 MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from which on both senses have a width of their own
 ROUNDS_OF_CURVE = 2  # in which curve and widths are fitted in turn
-MIN_NOISE_SHARE = 1e-12  # of the torque: less is rounding
+MIN_NOISE_SHARE = 1e-5  # of the torque: no sensor has less noise
 MIN_MISFIT_SIGMA = 4.0  # standard deviations of a loop's width that no source explains
 PLANNED_SAMPLES = 400
 MAX_PLANNED_LOOPS = 3
@@ -284,6 +284,12 @@ class LossShares(Presented):
             if each.name == name:
                 return each
         raise KeyError(f"{name!r} is no source of these loops; they are {[each.name for each in self.shares]}")
+
+    @property
+    def in_words(self) -> str:
+        """The shares that are separated, in one line."""
+        shares = [f"{each.name} {100.0 * each.share:.0f} ± {100.0 * each.sigma:.0f} %" for each in self.shares if not each.why]
+        return "; ".join(shares) or "no source is separated"
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -526,14 +532,16 @@ def _shared(loop: LossLoop, curve: _Curve) -> Array:
 
 
 def _cycle(loop: LossLoop, curve: _Curve, model: _Widths) -> Array:
-    """Return the loss of a cycle for the number 1 of each shape [J]."""
-    widths = np.abs(model.of_loop(loop, curve))
-    loss = np.zeros(widths.shape[1])
+    """Return the loss of a cycle for the number 1 of each shape, from reversal to reversal and back [J]."""
+    loss = np.zeros(sum(len(each.shapes) for each in model.sources))
     for sense in (1.0, -1.0):
-        way = loop.sense == sense
-        order = np.argsort(loop.twist[way])
-        twist = loop.twist[way][order]
-        loss += np.trapezoid(widths[way][order], twist, axis=0) * (loop.ends[1] - loop.ends[0]) / float(np.ptp(twist))
+        way = np.flatnonzero(loop.sense == sense)
+        way = way[np.argsort(loop.twist[way])]
+        twist = np.concatenate((loop.ends[:1], loop.twist[way], loop.ends[1:]))
+        torque = np.concatenate(([curve.low], curve.torque[way], [curve.high]))
+        rate = np.concatenate((loop.rate[way[:1]], loop.rate[way], loop.rate[way[-1:]]))
+        whole = replace(loop, twist=twist, torque=torque, sense=np.ones(len(twist)), rate=rate)
+        loss += np.trapezoid(model.of_loop(whole, curve._replace(torque=torque)), twist, axis=0)
     return loss
 
 
@@ -614,37 +622,38 @@ def _next_loops(fit: _Fit, place: int, total: float, floor: float) -> str:
     """Return in words the loops that would separate a source, the best one first."""
     if fit.misfit > MAX_SHARE_SIGMA:
         return f"the sources leave {percent(fit.misfit)} of the width of a loop unexplained"
-    weights = (_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total)
-    information, chosen = np.linalg.inv(fit.covariance), list[LossLoop]()
-    options = [*_planned(fit)]
+    weights = np.append((_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total), np.zeros(len(fit.falls)))
+    covariance, chosen, options = fit.covariance, list[LossLoop](), [*_planned(fit)]
 
-    def sigma(more: Array) -> float:
-        after = np.linalg.inv(information + more)[: len(weights), : len(weights)]
+    def sigma(after: Array) -> float:
         return float(np.hypot(np.sqrt(max(weights @ after @ weights, 0.0)), floor))
 
-    while len(chosen) < MAX_PLANNED_LOOPS and sigma(np.zeros_like(information)) > MAX_SHARE_SIGMA:
-        loop, more = min(options, key=lambda option: sigma(option[1]))
-        information, chosen = information + more, [*chosen, loop]
-    loops = "a loop" if len(chosen) == 1 else "loops"
-    return (
-        f"{loops} of {' and '.join(loop.words for loop in chosen)} would determine it to ± {percent(sigma(0.0 * information))}"
-    )
+    while len(chosen) < MAX_PLANNED_LOOPS and sigma(covariance) > MAX_SHARE_SIGMA:
+        loop, rows = min(options, key=lambda option: sigma(_with_rows(covariance, option[1])))
+        covariance, chosen = _with_rows(covariance, rows), [*chosen, loop]
+    loops = f"{'a loop' if len(chosen) == 1 else 'loops'} of {' and '.join(loop.words for loop in chosen)}"
+    return f"{loops} would determine it to ± {percent(sigma(covariance))}"
+
+
+def _with_rows(covariance: Array, rows: Array) -> Array:
+    """Return the covariance after further equations of unit uncertainty, without the inverse of an ill-conditioned one."""
+    shared = rows @ covariance
+    return np.asarray(covariance - shared.T @ np.linalg.solve(np.eye(len(rows)) + shared @ rows.T, shared))
 
 
 def _planned(fit: _Fit) -> Iterator[tuple[LossLoop, Array]]:
-    """Yield loops that could be measured, and their information about amplitudes and falls."""
-    largest, curve = fit.loops[fit.largest], fit.curves[fit.largest]
-    model = fit.widths
-    stiffness = 2.0 * curve.reach / float(np.ptp(largest.twist))
+    """Yield loops that could be measured, and their equations of amplitudes and falls, as rows of unit uncertainty."""
+    largest, curve, model = fit.loops[fit.largest], fit.curves[fit.largest], fit.widths
+    stiffness = 2.0 * curve.reach / (largest.ends[1] - largest.ends[0])
     rate = largest.speed if largest.is_timed else np.nan
     rates, warmths = PLANNED_RATES if largest.is_timed else (1.0,), PLANNED_WARMTHS if model.lubricants else (0.0,)
     ratios = {0.0, *(each.ratio for each in fit.loops)}
     for ratio, warmer, faster, part in product(sorted(ratios), warmths, rates, PLANNED_REACHES):
-        temperature = largest.temperature + warmer
-        loop = LossLoop.planned(ratio, stiffness, part * curve.reach, faster * rate, temperature)
-        widths = model.of_loop(loop, _Curve(loop.torque, -part * curve.reach, part * curve.reach)) / fit.noise
+        temperature, reach = largest.temperature + warmer, part * curve.reach
+        loop = LossLoop.planned(ratio, stiffness, reach, faster * rate, temperature)
+        widths = model.of_loop(loop, _Curve(loop.torque, -reach, reach)) / fit.noise
         rows = model.jacobian(widths, temperature, fit.amplitudes, fit.falls)
-        yield loop, rows.T @ rows
+        yield loop, np.linalg.qr(rows, mode="r")
 
 
 def _remarks(fit: _Fit) -> Iterator[str]:
