@@ -24,6 +24,7 @@ from strainwave.identification.candidates.torsion import (
     held_out_blocks,
     plain_error,
 )
+from strainwave.identification.candidates.torsion.candidate import asymmetry_in_words
 from strainwave.identification.candidates.torsion.losses import LossLoop, loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
@@ -128,7 +129,7 @@ class Torsion(Kind):
         loop = TorsionLoop.of(file.recording, gear)
         friction_measured = "friction_input" in known.determined
         training = held_out_blocks(len(loop.twist))
-        best, *others = fit_loop(loop, gear, training, friction_measured=friction_measured)
+        best, *others = fits = fit_loop(loop, gear, training, friction_measured=friction_measured)
         in_series = loop.input_ratio is None and _series_stiffness(file.recording["twist"], file.recording["torque"])
         of_set = () if in_series else stiffness_of_loop(file.recording, best.fit, start, name)
         checks = [clipping(file.recording, name), *of_set]
@@ -144,6 +145,7 @@ class Torsion(Kind):
             name, file, best.name, estimates,
             (
                 *file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start),
+                *asymmetry_in_words(fits),
                 *_of_error(gain_sigma, loop), *shaped.remarks,
             ),
             (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),

@@ -433,7 +433,7 @@ class _Equations:
     @property
     def triangle(self) -> _Equations:
         """The same sum of squares by as many equations as there are unknowns."""
-        rows = np.linalg.qr(np.column_stack((self.widths, self.torque)), mode="r")
+        rows = np.asarray(np.linalg.qr(np.column_stack((self.widths, self.torque)), mode="r"))
         return replace(self, widths=rows[:, :-1], torque=rows[:, -1])
 
 
@@ -653,7 +653,7 @@ def _planned(fit: _Fit) -> Iterator[tuple[LossLoop, Array]]:
         loop = LossLoop.planned(ratio, stiffness, reach, faster * rate, temperature)
         widths = model.of_loop(loop, _Curve(loop.torque, -reach, reach)) / fit.noise
         rows = model.jacobian(widths, temperature, fit.amplitudes, fit.falls)
-        yield loop, np.linalg.qr(rows, mode="r")
+        yield loop, np.asarray(np.linalg.qr(rows, mode="r"))
 
 
 def _remarks(fit: _Fit) -> Iterator[str]:
