@@ -1,9 +1,10 @@
 """Torsion loops whose loss has drawn sources, by plain numpy: friction of bearing and mesh, dry and viscous, and material.
 
-Springs are linear, cubic or of three segments. Bristles bend over up to 1 % of the travel before they slip. The material has
-the ellipse of a loss factor, the lens of Rayleigh's law, or both. The kinematic error is inside loops at the input. Sensors
-have noise, white or with memory, resolution, and a wrong zero. Half of the designs lack a side, a load, a rate or the time. The
-truth is the work of each source over the last cycle of the largest loop, which a share that is stated must agree with.
+Springs are linear, cubic or of three segments. Bristles bend over up to 1 % of the travel before they slip, in one design up
+to 30 %. The material has the ellipse of a loss factor, the lens of Rayleigh's law, or both. The kinematic error is inside loops
+at the input. Sensors have noise, white or with memory, resolution, and a wrong zero. Other designs lack a side, a load, a rate
+or the time. The truth is the work of each source over the last cycle of the largest loop, which a share that is stated must
+agree with.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ SOURCES = (
 )  # fmt: skip
 DESIGNS = (
     "whole", "whole", "whole", "whole", "two temperatures", "output alone", "input alone", "one load", "one rate", "no time",
+    "gradual slip",
 )  # fmt: skip
 CYCLES, SAMPLES = 2, 400  # of a loop; of a cycle
 ROOM = 295.0  # K
@@ -159,6 +161,8 @@ def split(seed: int) -> tuple[LossShares, dict[str, float]]:
     truth, design = drawn(random), DESIGNS[seed % len(DESIGNS)]
     if design == "no time":  # of slow loops, as of weights
         truth = replace(truth, bearing=(truth.bearing[0], 0.0), gear=(truth.gear[0], 0.0))
+    if design == "gradual slip":
+        truth = replace(truth, bends=(*(float(random.uniform(1.0, 30.0)) * np.array(truth.bends)).tolist(),))
     loops = list(loops_of(truth, design, random))
     gear = Gear().replace(kinematics=kinematics.StrainWave(
         flexspline_teeth=2 * truth.ratio, circular_spline_teeth=2 * truth.ratio + 2, fixed="circular_spline"

@@ -61,7 +61,8 @@ WHOLE, TWO_TEMPERATURES, INPUT_ALONE = 0, 4, 6  # seeds of designs
 SLOW = pytest.mark.slow("identification")
 
 
-@pytest.mark.parametrize("seed", [pytest.param(WHOLE, marks=SLOW), pytest.param(TWO_TEMPERATURES, marks=SLOW), INPUT_ALONE])
+@SLOW
+@pytest.mark.parametrize("seed", [WHOLE, TWO_TEMPERATURES, INPUT_ALONE])
 def test_drawn_sources_are_right_or_not_separable(seed: int) -> None:
     result, truth = split(seed)
     assert outcome(seed).verdict == "right"

@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave._core import Gear
-from strainwave.analysis.branches import PRESLIDING_SHARE, slid, turning_points
+from strainwave.analysis.branches import turning_points
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
@@ -51,6 +51,7 @@ FALL_SIGMA = 0.05  # 1/K: of the relative fall of friction with the temperature,
 MIN_CORRELATION_OF_PARTNERS = 0.5  # of shares that are stated as a sum
 MAX_REACH_DIFFERENCE = 0.05  # of the span: reversals of one loop that differ by more are those of several
 MIN_SAMPLES_PER_WAY = 10
+REVERSAL_SHARES = (0.02, 0.06, 0.15)  # of the span, next to a reversal, that is left out; the second is taken
 MAX_PIECES_OF_CURVE = 24  # cubic pieces of the curve that both ways share
 SAMPLES_PER_PIECE = 12
 END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
@@ -91,7 +92,7 @@ class LossLoop(ComparedByFields):
 
     @classmethod
     def of(cls, recording: Recording, gear: Gear) -> LossLoop:
-        """Return the loop of a recording, without the first way of a gear that was not loaded before, and without reversals.
+        """Return the loop of a recording, without the first way of a gear that was not loaded before.
 
         Raises:
             ValueError: the columns are none of a loop, it has no two ways, or reversals of several amplitudes
@@ -117,11 +118,17 @@ class LossLoop(ComparedByFields):
                 path = np.polynomial.Polynomial.fit(time[way], loop.twist[way], RATE_DEGREE)
                 rate[way] = np.abs(path.deriv()(time[way]))
         low, high = float(loop.twist.min()), float(loop.twist.max())
-        settled = np.minimum(loop.twist - low, high - loop.twist) >= PRESLIDING_SHARE * span  # on both ways alike
-        kept = slid(loop.twist) & settled & (sense != 0.0)
+        kept = sense != 0.0
         warmth = float(np.mean(recording.values("temperature", "K"))) if "temperature" in recording else np.nan
         ratio = 0.0 if loop.input_ratio is None else abs(loop.input_ratio)
         return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, warmth, (low, high))
+
+    def apart(self, share: float) -> LossLoop:
+        """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike."""
+        low, high = self.ends
+        kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
+        series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
+        return LossLoop(*series, self.ratio, self.temperature, self.ends)
 
     @classmethod
     def planned(cls, ratio: float, stiffness: float, reach: float, rate: float, temperature: float) -> LossLoop:
@@ -342,7 +349,11 @@ def loss_shares(loops: Sequence[Recording], gear: Gear) -> LossShares:
             raise ValueError(
                 f"loop {has.index(False) + 1} of {len(has)} has no {what}, others have one: give it to all or none"
             )
-    return _shares(_fitted(measured))
+    nearest, *others = REVERSAL_SHARES
+    near = _fitted([loop.apart(nearest) for loop in measured])
+    at_ends = [(curve.low, curve.high) for curve in near.curves]
+    fit, *further = (_fitted([loop.apart(share) for loop in measured], at_ends) for share in others)
+    return _shares(fit, np.array([each.shares - fit.shares for each in (near, *further)]))
 
 
 # ---- Fit -------------------------------------------------------------------------------------------------------------
@@ -402,6 +413,12 @@ class _Fit:
     noise: float
     misfit: float
 
+    @property
+    def shares(self) -> Array:
+        """Shares of the sources in the loss of a cycle, shape (sources,)."""
+        losses = _added(self.widths.sources) @ (self.unit_loss * self.amplitudes)
+        return np.asarray(losses / losses.sum())
+
 
 @dataclass(frozen=True, eq=False)
 class _Equations:
@@ -437,13 +454,16 @@ class _Equations:
         return replace(self, widths=rows[:, :-1], torque=rows[:, -1])
 
 
-def _fitted(loops: Sequence[LossLoop]) -> _Fit:
-    """Fit all sources to all loops, with a curve of each loop that both ways share."""
-    curves = [_curve(loop, None) for loop in loops]
+def _fitted(loops: Sequence[LossLoop], at_ends: Sequence[tuple[float, float]] | None = None) -> _Fit:
+    """Fit all sources to all loops, with a curve of each loop that both ways share, between known torques at its ends [N.m]."""
+    known = [None] * len(loops) if at_ends is None else at_ends
+    curves = [_curve(loop, None, ends) for loop, ends in zip(loops, known, strict=True)]
     largest = _largest(loops, curves)
     model = _model_of(loops, largest)
     for _ in range(ROUNDS_OF_CURVE):
-        curves = [_curve(loop, model.of_loop(loop, curve)) for loop, curve in zip(loops, curves, strict=True)]
+        curves = [
+            _curve(loop, model.of_loop(loop, curve), ends) for loop, curve, ends in zip(loops, curves, known, strict=True)
+        ]
     equations = [_Equations.of(loop, curve, model) for loop, curve in zip(loops, curves, strict=True)]
     unit_loss = _cycle(loops[largest], curves[largest], model)
     before = _priors(unit_loss, equations[largest], len(model.lubricants))
@@ -500,7 +520,7 @@ def _splines(loop: LossLoop) -> Array:
     return np.asarray(BSpline.design_matrix(loop.twist, knots, 3).toarray())
 
 
-def _curve(loop: LossLoop, widths: Array | None) -> _Curve:
+def _curve(loop: LossLoop, widths: Array | None, at_ends: tuple[float, float] | None) -> _Curve:
     """Return the torque on the curve that both ways share, beside the widths of sources; of a linear spring if None."""
     splines = _splines(loop)
     if widths is None:  # as of a linear spring
@@ -510,7 +530,7 @@ def _curve(loop: LossLoop, widths: Array | None) -> _Curve:
         widths = loop.sense[:, np.newaxis] * np.stack([np.ones_like(way), np.abs(way), np.sqrt(bow), bow], axis=1)
     coefficients = solved(np.column_stack((splines, widths)), loop.torque)
     torque = splines @ coefficients[: splines.shape[1]]
-    low, high = (_at_end(loop.twist, torque, end) for end in loop.ends)
+    low, high = at_ends or (_at_end(loop.twist, torque, end) for end in loop.ends)
     return _Curve(torque, low, high)
 
 
@@ -577,39 +597,45 @@ def _misfit(left: Array, explained: Array) -> float:
 # ---- Shares ----------------------------------------------------------------------------------------------------------
 
 
-def _shares(fit: _Fit) -> LossShares:
-    """Return the shares of sources, their shapes added."""
+def _shares(fit: _Fit, shifts: Array) -> LossShares:
+    """Return the shares of sources, their shapes added.
+
+    Args:
+        fit: of all loops
+        shifts: of the shares if more or less next to reversals is left out, shape (fits, sources)
+    """
     added = _added(fit.widths.sources)
-    count = len(fit.amplitudes)
     losses = added @ (fit.unit_loss * fit.amplitudes)
     total = float(losses.sum())
-    by_shape = fit.covariance[:count, :count]
+    by_shape = fit.covariance[: len(fit.amplitudes), : len(fit.amplitudes)]
     of_losses = added @ (by_shape * np.outer(fit.unit_loss, fit.unit_loss)) @ added.T
-    values, of_values = added @ fit.amplitudes, added @ by_shape @ added.T
-    floor = float(np.hypot(SHAPE_SIGMA, fit.misfit))
-    sigmas = np.hypot(np.sqrt(np.diag(of_losses)) / abs(total), floor)
-    names = [each.name for each in fit.widths.sources]
+    chance, names = np.sqrt(np.diag(of_losses)) / abs(total), [each.name for each in fit.widths.sources]
+    of_forms = np.hypot(np.hypot(SHAPE_SIGMA, fit.misfit), np.abs(shifts).max(axis=0))
+    of_one = added @ fit.unit_loss / added.sum(axis=1)  # loss for the number 1 [J]
+    values = added @ fit.amplitudes
+    value_sigmas = np.hypot(np.sqrt(np.diag(added @ by_shape @ added.T)), of_forms * abs(total) / of_one)
 
     def share(place: int) -> LossShare:
-        source, value = fit.widths.sources[place], float(values[place])
-        value_sigma = float(np.sqrt(of_values[place, place]))
-        own = LossShare(
-            source.name, float(losses[place] / total), float(sigmas[place]), value, value_sigma, source.quantity, source.unit
-        )
-        return own if own.sigma <= MAX_SHARE_SIGMA else replace(own, why=_why(place))
+        source, of_cycle = fit.widths.sources[place], float(losses[place] / total)
+        sigma, number = float(np.hypot(chance[place], of_forms[place])), (float(values[place]), float(value_sigmas[place]))
+        own = LossShare(source.name, of_cycle, sigma, *number, source.quantity, source.unit)
+        return own if sigma <= MAX_SHARE_SIGMA else replace(own, why=_why(place))
 
     def _why(place: int) -> str:
+        if chance[place] <= MAX_SHARE_SIGMA:
+            by = percent(float(of_forms[place]))
+            return f"the loops depart from the forms of all sources, by {by} of the loss: friction may slip little by little"
         related = np.abs(of_losses[place]) / np.sqrt(of_losses[place, place] * np.diag(of_losses))
-        partners = [
-            other for other in range(len(names)) if other != place and related[other] > MIN_CORRELATION_OF_PARTNERS
-        ]  # fmt: skip
+        partners = [other for other in range(len(names)) if other != place and related[other] > MIN_CORRELATION_OF_PARTNERS]
         together = sum_by_covariance(of_losses, [place, *partners], losses, names, "J")
+        of_sum = np.abs(shifts[:, [place, *partners]] @ together.factors).max() if partners else of_forms[place]
+        floor = float(np.hypot(np.hypot(SHAPE_SIGMA, fit.misfit), of_sum))
+        together = replace(together, sigma=float(np.hypot(together.sigma, floor * abs(total))))
         known = f"{together}, " if partners and together.sigma < MAX_SHARE_SIGMA * abs(total) else ""
-        return f"{known}{_next_loops(fit, place, total, floor)}"
+        return f"{known}{_next_loops(fit, place, total)}"
 
-    return LossShares(
-        tuple(share(place) for place in range(len(names))), total, fit.loops[fit.largest].words, tuple(_remarks(fit))
-    )
+    shares = tuple(share(place) for place in range(len(names)))
+    return LossShares(shares, total, fit.loops[fit.largest].words, tuple(_remarks(fit)))
 
 
 def _added(sources: Sequence[Source]) -> Array:
@@ -618,15 +644,13 @@ def _added(sources: Sequence[Source]) -> Array:
     return np.repeat(rows, [len(each.shapes) for each in sources], axis=1)
 
 
-def _next_loops(fit: _Fit, place: int, total: float, floor: float) -> str:
+def _next_loops(fit: _Fit, place: int, total: float) -> str:
     """Return in words the loops that would separate a source, the best one first."""
-    if fit.misfit > MAX_SHARE_SIGMA:
-        return f"the sources leave {percent(fit.misfit)} of the width of a loop unexplained"
     weights = np.append((_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total), np.zeros(len(fit.falls)))
     covariance, chosen, options = fit.covariance, list[LossLoop](), [*_planned(fit)]
 
     def sigma(after: Array) -> float:
-        return float(np.hypot(np.sqrt(max(weights @ after @ weights, 0.0)), floor))
+        return float(np.hypot(np.sqrt(max(weights @ after @ weights, 0.0)), SHAPE_SIGMA))
 
     while len(chosen) < MAX_PLANNED_LOOPS and sigma(covariance) > MAX_SHARE_SIGMA:
         loop, rows = min(options, key=lambda option: sigma(_with_rows(covariance, option[1])))
