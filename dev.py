@@ -5,6 +5,7 @@
     python3 dev.py test --all   run all tests; `test -m slow` runs those that the fast tests leave out
     python3 dev.py times        print the processor time of each file compiled, and of the slowest tests of the last run
     python3 dev.py lint         check style, formatting and types
+    python3 dev.py format       repair style and formatting
     python3 dev.py sanitize     run tests of the compiled core with addresses, undefined behaviour and threads checked
     python3 dev.py bench        compare with other solvers; what follows goes to benchmarks/run.py
     python3 dev.py workbench    build the page of `strainwave workbench`, kept unless its sources change
@@ -219,15 +220,30 @@ def print_slowest(what: str, seconds: dict[str, float]) -> None:
 
 def lint(options: Sequence[str]) -> int:
     prepare(["lint", "test", "docs"])  # types of Sphinx, of which the pages' extension is a subclass
-    sources = [file for folder in ("include", "src", "tests") for file in sorted((ROOT / folder).rglob("*.[ch]pp"))]
     checks: tuple[tuple[str | Path, ...], ...] = (
         (BIN / "ruff", "check", "."),
         (BIN / "ruff", "format", "--check", "."),
         (BIN / "mypy",),
         (BIN / "mypy", "--platform", "win32", "--cache-dir", ".mypy_cache/win32", "python/strainwave"),
-        (BIN / "clang-format", "--dry-run", "--Werror", *sources),
+        (BIN / "clang-format", "--dry-run", "--Werror", *cplusplus()),
     )
     return max(attempt(*check, *options) for check in checks)
+
+
+def format(options: Sequence[str]) -> int:
+    if not (BIN / "clang-format").exists():  # what is edited need not compile
+        prepare(["lint"])
+    repairs: tuple[tuple[str | Path, ...], ...] = (
+        (BIN / "ruff", "check", "--fix", "."),
+        (BIN / "ruff", "format", "."),
+        (BIN / "clang-format", "-i", *cplusplus()),
+    )
+    return max(attempt(*repair, *options) for repair in repairs)
+
+
+def cplusplus() -> list[Path]:
+    """Returns the sources and headers in C++."""
+    return [file for folder in ("include", "src", "tests") for file in sorted((ROOT / folder).rglob("*.[ch]pp"))]
 
 
 # Of each check: the libraries of the compiler, environment variables, and the tests that are worth its time.
@@ -345,7 +361,7 @@ def pin(options: Sequence[str]) -> int:
 
 
 VERBS: dict[str, Callable[[Sequence[str]], int]] = {
-    verb.__name__: verb for verb in (demo, test, times, lint, sanitize, bench, workbench, docs, wheel, pin)
+    verb.__name__: verb for verb in (demo, test, times, lint, format, sanitize, bench, workbench, docs, wheel, pin)
 }
 
 

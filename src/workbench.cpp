@@ -212,6 +212,25 @@ EXPORT(error) int error(int l, int s, int c, int n) {
         });
     });
 }
+/// Random kinematic error [rad] over the input angle [rad], at rest and without load.
+EXPORT(noise) int noise(int l, int s, int c, int n) {
+    return of_gear(l, s, c, n, 1, [&](const kernel::Set& set) {
+        general::with_model<general::GeneralGear>(set, set.numbers, [&](const auto& gear) {
+            for (int i = 0; i < n; ++i) {
+                const double turns = strainwave::rint(points[i] / (2.0 * pi));
+                values[i] = gear.kinematic_noise.at(Angle<double>{points[i] - 2.0 * pi * turns, turns}, 0.0, 0.0).value;
+            }
+        });
+    });
+}
+/// Signed ratio of the input angle to the output angle, whatever the point.
+EXPORT(ratio) int ratio(int l, int s, int c, int n) {
+    return of_gear(l, s, c, n, 1, [&](const kernel::Set& set) {
+        general::with_model<general::GeneralGear>(set, set.numbers, [&](const auto& gear) {
+            for (int i = 0; i < n; ++i) values[i] = gear.kinematics.ratio();
+        });
+    });
+}
 /// Torque [N.m] of the spring alone over its twist [rad], then its slope [N.m/rad].
 EXPORT(spring) int spring(int l, int s, int c, int n) {
     return of_gear(l, s, c, n, 2, [&](const kernel::Set& set) {

@@ -29,7 +29,7 @@ from strainwave.workbench.schema import schema
 
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ROOT / "python" / "strainwave" / "workbench" / "page"
-SCRIPTS = ("model", "core", "curves", "fit", "plots", "form", "page")
+SCRIPTS = ("model", "toml", "gearfile", "core", "curves", "fit", "plots", "form", "cards", "page")
 COMPILER = (sys.executable, "-m", "ziglang", "c++", "-target", "wasm32-wasi")
 # The bits of a result are those of the compiled package: no contraction, and arithmetic in its order.
 FLAGS = (
@@ -44,7 +44,7 @@ MAX_PAGE = 600_000  # bytes, compressed by gzip
 def main(folder: Path, page: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     script = "\n".join((PARTS / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
-    script = f'"use strict";\n(() => {{\n{script}}})();\n'
+    script = f'"use strict";\n{script}'  # its names stay open to the pages of the studio
     plots, style_of_plots = uplot(folder)
     style = (PARTS / "style.css").read_text("utf-8") + style_of_plots
     policy = (

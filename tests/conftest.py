@@ -3,7 +3,6 @@
 import gc
 import os
 import signal
-import sys
 import time
 from collections.abc import Generator, Iterator
 from pathlib import Path
@@ -35,11 +34,17 @@ providers._get_local_constants = lambda: providers._local_constants
 
 @pytest.fixture(autouse=True)
 def nothing_remembered() -> Iterator[None]:
-    """Each test begins as a new process does: no gear was loaded from a file with ratings, and no drive has taken a step."""
+    """Each test begins as a new process does: no drive has taken a step."""
     yield
     kernels.forget_work()
-    if gear_set := sys.modules.get("strainwave.files.gear_set"):
-        gear_set.forget_loaded_sets()
+
+
+@pytest.fixture
+def kept_builds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shared objects that the package compiles in this process are those of an earlier run if nothing of them has changed."""
+    from tests.support.kept import keep_builds
+
+    keep_builds(monkeypatch)
 
 
 def pytest_configure() -> None:

@@ -197,6 +197,7 @@ ELSEWHERE = {
     "Pendulum": {
         "identification/results/drive.py": ALONE,
         "identification/experiments/drive_log.py": "a run under gravity starts hanging, so must the log that it is fitted to",
+        "identification/experiments/motion_log.py": "gravity acts at the measured angle of the output, behind the wind-up",
         "identification/kinds/between_encoders.py": "gravity of the load that was fitted, along the motion of the log",
         "identification/kinds/predicted_log.py": "gravity depends on where the angle of a log counts from",
     },
@@ -268,8 +269,13 @@ def defining(model: Any) -> list[Path]:
 
 
 def with_its_name(model: Any) -> list[Path]:
+    """The headers of models of its name; such a model may have a base, as in src a part of the general drive has."""
+    name = model.__name__
+    plain, derived = re.compile(rf"\bstruct {name} {{"), re.compile(rf"\bstruct {name} : [^{{;]* {{")
     return [
-        path for path in SOURCES if model.__name__ in words(path) and re.search(rf"\bstruct {model.__name__} {{", code(path))
+        path
+        for path in SOURCES
+        if name in words(path) and (plain.search(code(path)) or (path.is_relative_to(HEADERS) and derived.search(code(path))))
     ]
 
 

@@ -82,6 +82,10 @@ consteval int members() {
         return sizeof...(Members);
 }
 
+/// Counts the base that models share: the first element of an aggregate. It names itself `Base`, and has no members.
+template <class T>
+inline constexpr int bases = requires { requires __is_empty(typename T::Base); } ? 1 : 0;
+
 /// Counts the members visited; one visited twice does not count again.
 struct Count {
     static constexpr int capacity = 64;
@@ -112,7 +116,7 @@ concept Described = requires(T& model) { T::fields(model, detail::Ignore{}); };
 
 /// Every member of `T` is described. Checked where a model is bound or listed, so a forgotten member does not compile.
 template <Described T>
-inline constexpr bool fully_described = detail::visited<T>() == detail::members<T>();
+inline constexpr bool fully_described = detail::bases<T> + detail::visited<T>() == detail::members<T>();
 
 namespace detail {
 

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from strainwave import Drive, _core
+from strainwave.arrays import numbers as numbers
+from strainwave.files.figures import number_of
 from strainwave.messages import listed, quoted, shortened
 
 Model = TypeVar("Model")
@@ -32,8 +34,6 @@ def number(name: str, value: object, unit: str = "", brackets: str = "()", low: 
     """
     if not isinstance(value, Real) or isinstance(value, bool):
         if isinstance(value, str) and unit not in ("", "1"):
-            from strainwave.files.entries import number_of
-
             return number(name, number_of(name, value, unit), unit, brackets, low, high)
         raise TypeError(f"{name} must be a number, not {shortened(value)}")
     try:
@@ -94,22 +94,6 @@ def whole(name: str, value: object, low: int, high: int = 2**63 - 1) -> int:
     if given > high:
         raise ValueError(f"{name} = {shortened(given)} must be {high} or less")
     return given
-
-
-def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    """Numbers of any shape, finite or not; text, dates and masked values are none."""
-    if type(values) is np.ndarray and values.dtype == np.float64:
-        return values
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise ValueError(f"{name} must be one series of numbers") from None
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} must hold numbers, not {array.dtype}")
-    if np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked values; every one must be a number")
-    with np.errstate(over="ignore"):  # a longer float may be too large; whoever wants finite numbers refuses the infinity
-        return array.astype(np.float64, copy=False)
 
 
 def positive_series(name: str, values: ArrayLike) -> NDArray[np.float64]:

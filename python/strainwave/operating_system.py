@@ -53,9 +53,12 @@ if sys.platform == "win32":
         """Return the number that all files have as their owner."""
         return 0
 
-    def kill_group(process: subprocess.Popen[bytes]) -> None:
+    def kill_group(pid: int) -> None:
         """End a process and those that it started."""
-        subprocess.run(["taskkill", "/T", "/F", "/PID", str(process.pid)], capture_output=True, check=False)
+        subprocess.run(["taskkill", "/T", "/F", "/PID", str(pid)], capture_output=True, check=False)
+
+    def limit_process(seconds: int, size: int) -> None:
+        """Do nothing: Windows has no such limits of a process."""
 
     def is_orphan(parent: int) -> bool:
         """False: in a virtual environment the parent of a Python is another process than the one that started it."""
@@ -63,6 +66,7 @@ if sys.platform == "win32":
 
 else:
     import fcntl
+    import resource
     import signal
 
     HAS_OWNERS = True
@@ -100,10 +104,16 @@ else:
         """Return the number of the user to whom the files of this process belong."""
         return os.geteuid()
 
-    def kill_group(process: subprocess.Popen[bytes]) -> None:
+    def kill_group(pid: int) -> None:
         """End the process group of a process: that process and those that it started."""
         with suppress(ProcessLookupError):  # they have just ended
-            os.killpg(process.pid, signal.SIGKILL)
+            os.killpg(pid, signal.SIGKILL)
+
+    def limit_process(seconds: int, size: int) -> None:
+        """Limit the processor time [s] and the memory [bytes] of this process and of those that it starts."""
+        for limit, wanted in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, size)):
+            _, hard = resource.getrlimit(limit)
+            resource.setrlimit(limit, (wanted if hard == resource.RLIM_INFINITY else min(wanted, hard), hard))
 
     def is_orphan(parent: int) -> bool:
         """True if the process that started this one, its parent, has ended."""

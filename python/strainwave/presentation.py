@@ -98,7 +98,9 @@ class Presented:
         from strainwave.drawing.notebook import html
 
         rows = list(self._rows())
-        return html(type(self).__name__, self._headline(), rows, list(self._remarks()), self._picture())
+        table = [_cells(row) for row in rows[:MAX_PRINTED_ROWS]]
+        more = len(rows) - len(table)
+        return html(type(self).__name__, self._headline(), table, more, list(self._remarks()), self._picture())
 
     def _picture(self) -> Figure | None:
         """Return the picture for a notebook; None if there is nothing to draw."""
@@ -329,6 +331,13 @@ def number_text(row: Row) -> str:
     return typeset.number(value, COUNT_DIGITS if is_count else PLAIN_DIGITS)
 
 
+def _cells(row: Row) -> tuple[str, ...]:
+    """Return name, number, unit and note of a row; name and text if it has no number."""
+    if isinstance(row.value, str):
+        return row.name, ", ".join(filter(None, (row.value, row.note)))
+    return row.name, number_text(row), typeset.unit(row.unit), row.note
+
+
 def in_one_line(rows: Iterable[Row]) -> str:
     """Return the first rows as one line, as many as fit."""
     line = ""
@@ -356,7 +365,7 @@ def aligned(rows: Sequence[Row]) -> Iterator[str]:
             yield from textwrap.wrap(name, width)
             name = ""
         if isinstance(row.value, str):
-            words = one_line(", ".join(filter(None, (row.value, row.note)))) or "—"
+            words = one_line(_cells(row)[1]) or "—"
             indent = names + 2
             yield from textwrap.wrap(words, width, initial_indent=f"{name:<{indent}}", subsequent_indent=" " * indent)
             continue

@@ -1,8 +1,8 @@
 """Progress of long calls: one argument, which means the same everywhere.
 
-`sw.simulate` and its kin, `sw.identify`, `sw.predict`, `sw.compensate` and other long calls take `progress`: None shows a bar
-on a terminal once the call has taken a second, True shows it at once, False shows nothing, and a function is called with what
-is worked on and with the share of the whole that is done.
+`sw.simulate` and its kin, `sw.fit`, `sw.identify`, `sw.predict`, `sw.compensate` and other long calls take `progress`: None
+shows a bar on a terminal once the call has taken a second, True shows it at once, False shows nothing, and a function is
+called with what is worked on and with the share of the whole that is done. Calls within a call show nothing.
 
 >>> shares = []
 >>> with by_count(lambda stage, share: shares.append((stage, share)), "simulating", 4) as done:
@@ -17,6 +17,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from math import isnan, nan
 from threading import Lock, Timer, current_thread, main_thread
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -29,7 +30,25 @@ if TYPE_CHECKING:
 Report: TypeAlias = Callable[[str, float], None]  # called with a stage and the share done, in [0, 1], nan if not known
 Progress: TypeAlias = bool | Report | None
 SHOWN_AFTER = 1.0  # s, that a call takes before its bar appears
-_shown = Lock()  # of the one bar that a terminal has: calls within a call show none
+_is_within: ContextVar[bool] = ContextVar("is_within", default=False)  # a call that shows its progress, or hides it
+_watcher: ContextVar[Report | None] = ContextVar("watcher", default=None)
+
+
+@contextmanager
+def watched_by(report: Report) -> Iterator[None]:
+    """Call a function in place of a bar for the calls here that leave `progress` to the terminal; not for calls within these.
+
+    >>> stages = []
+    >>> with watched_by(lambda stage, share: stages.append(stage)), in_turn(None, 2) as turn:
+    ...     turn("first")
+    >>> stages
+    ['first']
+    """
+    token = _watcher.set(report)
+    try:
+        yield
+    finally:
+        _watcher.reset(token)
 
 
 @contextmanager
@@ -64,23 +83,25 @@ def _watched(progress: Progress) -> Iterator[Report | None]:
     Raises:
         TypeError: `progress` is neither None, True, False nor a function
     """
-    if callable(progress):
-        yield progress
-        return
-    if not (progress is None or isinstance(progress, bool)):
+    if not (callable(progress) or progress is None or isinstance(progress, bool)):
         raise TypeError(f"progress = {shortened(progress)} must be True, False, None, or a function of a stage and a share")
-    wanted = (sys.stderr is not None and sys.stderr.isatty()) if progress is None else progress
-    if not wanted or current_thread() is not main_thread() or not _shown.acquire(blocking=False):
-        yield None
-        return
+    is_outermost = not _is_within.get()
+    token = _is_within.set(True)
     try:
-        bar = _Bar(0.0 if progress else SHOWN_AFTER)
-        try:
-            yield bar.report
-        finally:
-            bar.close()
+        watcher = progress if callable(progress) else _watcher.get() if progress is None and is_outermost else None
+        is_wanted = sys.stderr is not None and sys.stderr.isatty() if progress is None else progress
+        if watcher is not None:
+            yield watcher
+        elif is_outermost and is_wanted and current_thread() is main_thread():
+            bar = _Bar(0.0 if progress else SHOWN_AFTER)
+            try:
+                yield bar.report
+            finally:
+                bar.close()
+        else:
+            yield None
     finally:
-        _shown.release()
+        _is_within.reset(token)
 
 
 class _Bar:

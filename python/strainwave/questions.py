@@ -46,7 +46,7 @@ class Answer:
         words = [word for name, option in SINGLE.items() if name in self.given for word in (option, str(self.given[name]))]
         for name, option in TABLES.items():
             for key, value in self.given.get(name, {}).items():
-                words += [option, f"{key}={self._written(key, value)}"]
+                words += [option, f"{key}={self.written(key, value)}"]
         return words
 
     @property
@@ -82,13 +82,13 @@ class Answer:
         numbers, files = {**first.numbers, **self.numbers}, (*first.files, *self.files)
         return replace(self, label=label, given=given, numbers=numbers, files=files)
 
-    def _written(self, name: str, value: object) -> str:
+    def written(self, name: str, value: object) -> str:
         """Return a value of an option, with the word in place of a number that only a person knows."""
         text = f"{value:g}" if isinstance(value, float) else str(value)
         return re.sub(r"\d+(\.\d+)?(e[+-]?\d+)?", NUMBER, text, count=1) if name in self.numbers else text
 
     def _entry(self, name: str, value: object) -> str:
-        text = self._written(name, value)
+        text = self.written(name, value)
         return f'"{name}": "{text}"' if isinstance(value, str) else f'"{name}": {text}'
 
 

@@ -27,7 +27,11 @@ from tests.support.cplusplus import (
 
 both = pytest.mark.parametrize("name", ["g++", "clang++"])
 
-SOURCES = sorted(path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src").rglob("*.cpp"))
+SOURCES = {path.relative_to(ROOT).as_posix() for path in (ROOT / "src").rglob("*.cpp")}
+GROUPS = [  # of sources, as the build compiles them together; any other by itself
+    found[1].split() for found in re.finditer(r"^together\(\w+\s([^)]+)\)", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)
+]
+APART = [[source] for source in sorted(SOURCES.difference(*GROUPS))]
 # Headers of other projects, whose warnings are no errors here.
 FOREIGN = (f"-isystem{nanobind.include_dir()}", f"-isystem{sysconfig.get_path('include')}")
 INSTANTIATED = ("-Xclang", "-fpch-instantiate-templates")  # templates of what was compiled before: once, not in each source
@@ -103,10 +107,10 @@ def read_before(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, ...]:
 
 
 @pytest.mark.slow("build")
-@pytest.mark.parametrize("source", SOURCES)
-def test_clang_compiles_every_source_of_the_extension(source: str, read_before: tuple[str, ...], tmp_path: Path) -> None:
-    """With the warnings with which g++ compiles them, each from nothing, whenever the package is built for the tests."""
-    including = {"source.cpp": f'#include "{ROOT / "src" / source}"\n'}
+@pytest.mark.parametrize("sources", [*GROUPS, *APART], ids=lambda sources: sources[0])
+def test_clang_compiles_every_source_of_the_extension(sources: list[str], read_before: tuple[str, ...], tmp_path: Path) -> None:
+    """With the warnings with which g++ compiles them, from nothing, whenever the package is built for the tests."""
+    including = {"source.cpp": "".join(f'#include "{ROOT / source}"\n' for source in sources)}
     assert compilation(checker("clang++"), tmp_path, including, *FOREIGN, *read_before) == (0, "")
 
 

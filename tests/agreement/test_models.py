@@ -142,7 +142,7 @@ starting_gears = reduced_gears.map(with_a_start)
 
 @pytest.mark.slow("physics")
 @pytest.mark.filterwarnings("ignore:the drive has bristles:RuntimeWarning")  # asked for
-@settings(max_examples=sample(15, 50))
+@settings(max_examples=sample(6, 50))
 @given(starting_gears, seeds)
 def test_a_gear_with_laws_drawn_at_every_place_runs_one_trajectory_in_every_scalar(gear: sw.Gear, seed: int) -> None:
     agree(DRIVE.replace(gear=gear), seed)

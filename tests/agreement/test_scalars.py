@@ -10,11 +10,13 @@ import strainwave as sw
 from hypothesis import given, settings, strategies as st
 from numpy.typing import NDArray
 from strainwave import Drive, _core
+from strainwave.files.described import parts
 from strainwave.simulation.ensemble import COUNTED_NAMES
 from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import differentiate
 from strainwave.simulation.signals import outputs
 
+from tests.support.joint_sized import INPUT_SIZES, OUTPUT_SIZES, joint_sized
 from tests.support.reference_drive import DRIVE, command
 from tests.support.samples import sample
 from tests.support.side_by_side import side_by_side
@@ -102,7 +104,7 @@ def test_the_swing_makes_a_set_valued_side_stick_and_slip(name: str, side: str) 
     assert np.count_nonzero(np.diff(stuck)) >= 4
 
 
-PLACES = ("friction_input", "friction_mesh", "friction_output")
+# Laws that need numbers of their own for each to act in this run.
 OTHER_LAWS: dict[str, dict[str, Any]] = {
     "misalignment": {
         "kinematic_error": made(
@@ -131,10 +133,8 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             seed=7,
         )
     },
-    "linear": {"stiffness": sw.stiffness.Linear(k=1.2e4)},
     "piecewise": {"stiffness": sw.stiffness.Piecewise(k1=8e3, k2=2e3, knee=5e-5)},
     "three_segment": {"stiffness": sw.stiffness.ThreeSegment(k1=8e3, k2=1e4, k3=1.3e4, t1=0.4, t2=0.9)},
-    "multi_compliance": {"stiffness": made(sw.stiffness.MultiCompliance, reduction=100.0)},
     "scaled": {
         "kinematic_error": sw.kinematic_error.Scaled(
             law=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.3, -1.0]),
@@ -142,18 +142,6 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             insertion_depth=1e-3,
             depth_sensitivity=100.0,
         )
-    },
-    "asymmetric_spring": {
-        "stiffness": sw.stiffness.Asymmetric(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), negative_factor=0.8),
-    },
-    "backlash": {"stiffness": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=5e-5)},
-    "frictional_windup": {
-        "hysteresis": sw.hysteresis.FrictionalWindup(springs=made(sw.stiffness.MultiCompliance, reduction=100.0), friction=0.3),
-    },
-    "fading_memory": {"hysteresis": sw.hysteresis.FadingMemory(stiffness=[3e3, 1e3], forgetting=[5e3, 2e3])},
-    "bouc_wen": {"hysteresis": sw.hysteresis.BoucWen(stiffness=4e3, saturation=0.4, sharpness=1.5, shape=0.6)},
-    "preisach": {
-        "hysteresis": sw.hysteresis.Preisach(density=sw.hysteresis.PowerDensity(limit=3e-4, saturation=0.5, exponent=1.5))
     },
     "regimes": {
         "hysteresis": sw.hysteresis.Regimes(
@@ -220,12 +208,6 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             speed=[1.0, 10.0, 60.0], level=[0.02, 0.025, 0.018, 0.03, 0.033, 0.029, 0.04, 0.045, 0.042], static_ratio=1.1
         )
     },
-    "asymmetric": {
-        "friction_input": sw.friction.Asymmetric(law=BRISTLE.gear.friction_input, dry_asymmetry=0.2, viscous_asymmetry=-0.1)
-    },
-    "cyclic": {
-        "friction_input": sw.friction.Cyclic(law=BRISTLE.gear.friction_input, order=[2.0], amplitude=[0.2], phase=[0.3])
-    },
     "thermal": {
         "friction_input": sw.friction.Thermal(
             law=BRISTLE.gear.friction_input, dry_fall=0.01, viscous_fall=0.02, reference_temperature=300.0
@@ -234,16 +216,32 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
 }
 
 
-def test_every_law_of_a_gear_that_has_numbers_has_its_derivatives_looked_at() -> None:
-    families = ("kinematics", "kinematic_error", "stiffness", "hysteresis", "softening")
-    of_drives = {getattr(drive.gear, part).name for drive in DRIVES.values() for part in (*families, *PLACES)}
-    known = {name for family in (*families, "friction") for name in _core.families[family]}
-    assert known - of_drives - set(OTHER_LAWS) == {"strain_wave"}
+PART_OF_FAMILY = {"friction": "friction_input"} | {
+    name: name for name in ("kinematics", "kinematic_error", "stiffness", "hysteresis", "softening")
+}
+IN_DRIVES = {getattr(drive.gear, part.name).name for drive in DRIVES.values() for part in parts(sw.Gear)} | {"strain_wave"}
+SIZED = {  # by name, of each law that is not listed: its part of a gear, and its class
+    name: (part, kind)
+    for family, part in PART_OF_FAMILY.items()
+    for name, kind in _core.families[family].items()
+    if name not in IN_DRIVES | set(OTHER_LAWS)
+}
 
 
-@pytest.mark.parametrize("law", OTHER_LAWS.values(), ids=OTHER_LAWS)
-def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: dict[str, Any]) -> None:
+def law_of(name: str) -> dict[str, Any]:
+    """Return a law as a part of a gear: one listed, or one with numbers of the size of the joint."""
+    if name in OTHER_LAWS:
+        return OTHER_LAWS[name]
+    part, kind = SIZED[name]
+    is_friction = part.startswith("friction")
+    sizes = INPUT_SIZES if is_friction else OUTPUT_SIZES
+    return {part: joint_sized(kind, sizes, within=BRISTLE.gear.friction_input if is_friction else None)}
+
+
+@pytest.mark.parametrize("name", [*OTHER_LAWS, *SIZED])
+def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(name: str) -> None:
     """Through stick, slip and reversals, to a part in 1e5 of the largest of each output: kinks let differences show no more."""
+    law = law_of(name)
     drive = BRISTLE.replace(gear=BRISTLE.gear.replace(**law))
     (part,) = law
     base, known = numbers(drive), [path for path, *_ in _core.parameters(drive)]
@@ -259,7 +257,7 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: 
             pair.append(columns(sw.simulate(_core.with_numbers(drive, varied), SWING, DT, sample=SAMPLE)))
         shown = (pair[0] - pair[1]) / (2.0 * h)
         size, rounding = np.abs(slope).max(axis=1), 1e-12 * scales(drive, run)[:, 0] / h
-        assert np.any(size > 1e3 * rounding), known[i]
+        assert np.any(size > 1e3 * rounding), f"{known[i]} changes nothing here: list {name} in OTHER_LAWS with numbers that do"
         assert np.all(np.abs(slope - shown) <= (1e-5 * size + rounding)[:, None]), known[i]
 
 
@@ -268,16 +266,16 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(law: 
 def test_derivatives_are_what_differences_show(drive: Drive) -> None:
     """At every sample, stick-slip included: the times of its events move with the numbers.
 
-    By every number of a drive on bristles, and of one with stick on both sides. Of the others, by the numbers of what sets
-    them apart and by every fourth of those that they share with these.
+    By every number, of a drive on bristles or of one with stick on both sides. Of all but the first, by the numbers of what
+    sets them apart; of the others, by every fourth of those that they share with it.
 
     Central differences over h and h / 2, extrapolated, are as good as a run's rounding over h, and as their agreement:
     where a Maxwell element starts to slip within h at one sample and beyond it at the next, they disagree.
     """
     base, paths = numbers(drive), [path for path, *_ in _core.parameters(drive)]
     known = {path: number for path, number, *_ in _core.parameters(BRISTLE)}
-    thorough = drive in (BRISTLE, DRIVES["both"])
-    chosen = [i for i, path in enumerate(paths) if thorough or base[i] != known.get(path) or i % 4 == 0]
+    first, every = {id(BRISTLE): (0, 2), id(DRIVES["both"]): (1, 2)}.get(id(drive), (0, 4))
+    chosen = [i for i, path in enumerate(paths) if base[i] != known.get(path) or i % every == first]
     run, slopes = differentiate(drive, Excitation(SWING), chosen, DT, SAMPLE)
 
     def difference(i: int, h: float) -> Array:

@@ -1,4 +1,4 @@
-"""Every relative link of a page of the repository leads to a tracked file, and to a heading of it if it names one."""
+"""Every relative link of a page of the repository leads to a file of it, and to a heading of that if it names one."""
 
 from __future__ import annotations
 
@@ -13,9 +13,10 @@ import links
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-TRACKED = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-KNOWN = {*TRACKED, *(posixpath.dirname(path) for path in TRACKED)}
-PAGES = [path for path in TRACKED if path.endswith(".md") or re.fullmatch(r"examples/tutorials/\w+\.py", path)]
+LIST_FILES = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]  # all but those that git ignores
+FILES = subprocess.run(LIST_FILES, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
+KNOWN = {*FILES, *(posixpath.dirname(path) for path in FILES)}
+PAGES = [path for path in FILES if path.endswith(".md") or re.fullmatch(r"examples/tutorials/\w+\.py", path)]
 HEADING = re.compile(r"^#+ (.+?) *$", re.MULTILINE)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import strainwave as sw
 import typer
+from strainwave import _core
 from strainwave.commands.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,6 +31,14 @@ def test_the_names_in_the_readme_exist() -> None:
     assert sorted(name for name in names if not hasattr(sw, name)) == []
     verbs = re.findall(r"`strainwave ([\w-]+)", README)
     assert [verb for verb in verbs if verb not in VERBS] == []
+
+
+def test_the_guide_to_the_models_has_a_row_for_each_that_can_be_chosen() -> None:
+    guide = (ROOT / "docs" / "how-to" / "which-model.md").read_text(encoding="utf-8")
+    rows = " ".join(row.split("|")[1] for row in guide.splitlines() if row.startswith("|"))
+    names = {kind.__name__ for family, kinds in _core.families.items() if family != "kinematics" for kind in kinds.values()}
+    without_effect = {"Constant", "NoDither", "NoFeedforward", "NoLearning", "NoMeter", "NoObserver"}
+    assert names - without_effect - set(re.findall(r"\b\w+", rows)) == set()
 
 
 def test_the_guide_to_the_command_lists_its_verbs() -> None:

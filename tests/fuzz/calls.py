@@ -62,7 +62,7 @@ NOT_CALLED = {
     *(f"sw.{name}" for name in (*RESULTS, "EnsembleWarning", "PassivityWarning")),
     *(f"files.entries.{name}" for name in ("check_line", "quantity_of", "Form", "schema", "entry_schema")),
     *(f"files.entries.{name}" for name in ("elements", "checked", "inline", "origin_lines")),
-    *(f"files.gear_set.{name}" for name in ("loaded_set", "forget_loaded_sets", "spelled")),
+    "files.gear_set.spelled",
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced")),
     *(f"identification.experiments.experiment.{name}" for name in ("Experiment", "Nuisance", "sensible")),
     "identification.experiments.friction_table.FrictionTable",

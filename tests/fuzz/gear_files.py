@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 import strainwave as sw
 from numpy.random import Generator
 from strainwave.files.entries import Entry, Quantity
-from strainwave.files.gear_set import CATALOGUE_FOLDER
+from strainwave.files.gear_set import DRIVES_FOLDER
 from strainwave.files.identified_tables import Covariance, Validation
 
 from tests.fuzz.laws import Case, described
@@ -75,5 +75,5 @@ def toml_case(random: Generator, folder: Path) -> Case:
 
 def name_case(random: Generator, folder: Path) -> Case:
     """A set asked for by a name that is none, or almost."""
-    name = mutated(picked(random, sw.catalogue()), random, ("hfuc-25-100", ".toml", "/", str(CATALOGUE_FOLDER)))
+    name = mutated(picked(random, sw.catalogue()), random, ("hfuc-25-100", ".toml", "/", str(DRIVES_FOLDER)))
     return Case(described(name), lambda: sw.GearSet.read(name))

@@ -6,8 +6,10 @@ from typing import Any
 
 import numpy as np
 import strainwave as sw
+from strainwave import _core
 from strainwave.simulation.signals import load_input
 
+from tests.support.joint_sized import INPUT_SIZES, OUTPUT_SIZES, joint_sized
 from tests.support.strategies import made
 
 NOISE = sw.kinematic_error.Stochastic(amplitude=2e-5, seed=3, load_sensitivity=0.05, speed_sensitivity=0.01)
@@ -198,7 +200,31 @@ def controls(scale: float) -> list[Any]:
     return [*laws, *(sw.control.Sampled(law=law, period=1e-3, delay=2e-4) for law in laws[1:])]
 
 
-def drawn(seed: int) -> sw.Drive:
+BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled"}  # in tests/structure/test_staged.py; here a gear has one spring
+PART_OF_FAMILY = {"friction": "friction_input"} | {
+    name: name for name in ("kinematic_error", "stiffness", "hysteresis", "softening")
+}
+UNLISTED = {  # by name, of each law of a gear that is in no list above: its part of a gear, and its class
+    name: (part, kind)
+    for family, part in PART_OF_FAMILY.items()
+    for name, kind in _core.families[family].items()
+    if kind.__name__ not in BALANCED_WITH_STAGES | {type(law).__name__ for law in GEAR_PARTS[part]}
+}
+SEED_OF_UNLISTED = 60  # a DC motor with a sampled control
+
+
+def drawn(case: int | str) -> sw.Drive:
+    """Return a joint with its energy measured: of parts drawn by a seed, each from its list, or with a law that is unlisted."""
+    if isinstance(case, int):
+        return drawn_by(case)
+    part, kind = UNLISTED[case]
+    sizes = INPUT_SIZES if part == "friction_input" else OUTPUT_SIZES
+    law = joint_sized(kind, sizes, within=STRIBECK if part == "friction_input" else None)
+    drive = drawn_by(SEED_OF_UNLISTED)
+    return drive.replace(gear=drive.gear.replace(**{part: law}))
+
+
+def drawn_by(seed: int) -> sw.Drive:
     """A joint whose parts are drawn, each from its list, with its energy measured."""
     random = np.random.default_rng(seed)
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.samples import sample
+
 TUTORIALS = Path(__file__).parents[2] / "examples" / "tutorials"
 MOVE = 'duration = 0.2\n[command]\nkind = "ramp"\nrate = 0.5\n'
 VERBS = {
@@ -20,7 +22,7 @@ VERBS = {
     "demo": "demo",
     "dataset": f"dataset make {TUTORIALS / '09_fault_data_plan.toml'} --out faults --workers 1",
 }
-PRESSES = 6
+PRESSES = sample(3, 6)
 PYTHON_SECONDS = 0.5  # in which Python starts
 ENDED = "it had ended by itself"
 PART_OF_RUN = 0.4  # in which Ctrl-C is pressed: on a machine that other work shares a run may take less than the one before

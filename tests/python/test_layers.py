@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections.abc import Iterable, Iterator
 from functools import cache
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from types import ModuleType
 
@@ -22,13 +24,25 @@ TOP = {"__main__"}
 
 @cache
 def imported(path: Path) -> frozenset[str]:
-    """The modules of the package that a module imports, within functions too."""
+    """What a module imports from the package, within functions and for types too."""
+    return names_imported(ast.walk(ast.parse(path.read_text())))
+
+
+def names_imported(nodes: Iterable[ast.AST]) -> frozenset[str]:
     return frozenset(
         f"{node.module}.{each.name}".removeprefix("strainwave.")
-        for node in ast.walk(ast.parse(path.read_text()))
+        for node in nodes
         if isinstance(node, ast.ImportFrom) and node.module is not None and node.module.split(".")[0] == "strainwave"
         for each in node.names
     )
+
+
+def run_nodes(node: ast.AST) -> Iterator[ast.AST]:
+    """All that runs at one time or another: what is for types alone does not."""
+    yield node
+    for child in ast.iter_child_nodes(node):
+        if not (isinstance(child, ast.If) and "TYPE_CHECKING" in ast.dump(child.test)):
+            yield from run_nodes(child)
 
 
 @pytest.mark.slow("physics")
@@ -41,14 +55,29 @@ def test_each_layer_imports_from_those_below_alone() -> None:
             assert above == set(), f"{path.relative_to(PACKAGE)} imports {above}"
 
 
-def test_nothing_imports_the_command_but_its_start() -> None:
+def test_nothing_imports_the_command_but_its_start_and_a_job() -> None:
     users = {path.stem for path in PACKAGE.rglob("*.py") if any(name.startswith("commands.cli") for name in imported(path))}
-    assert users == {"__main__"}
+    assert users == {"__main__", "job"}
 
 
 def test_a_person_who_never_opens_the_rig_can_forget_it() -> None:
     outside = [path for path in PACKAGE.rglob("*.py") if "rig" not in path.relative_to(PACKAGE).parts]
     assert [path.name for path in outside if any(name.startswith("rig") for name in imported(path))] == []
+
+
+@pytest.mark.slow("physics")
+def test_no_module_imports_itself_through_others() -> None:
+    """Nor within functions: what two modules need of each other belongs into a third below both."""
+    files = {path.relative_to(PACKAGE).with_suffix("").as_posix().replace("/", "."): path for path in PACKAGE.rglob("*.py")}
+    modules = {name.removesuffix(".__init__"): path for name, path in files.items() if name != "__init__"}
+    graph: dict[str, set[str]] = {}
+    for name, path in modules.items():
+        names = names_imported(run_nodes(ast.parse(path.read_text())))
+        graph[name] = {each if each in modules else each.rpartition(".")[0] for each in names} & modules.keys()
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(" imports ".join(reversed(error.args[1])))
 
 
 @pytest.mark.slow("physics")

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 import strainwave as sw
-from strainwave.progress import by_count, in_turn
+from strainwave.progress import by_count, in_turn, watched_by
 
 LOOP = """
 import time
@@ -70,6 +70,31 @@ def test_a_call_within_a_call_has_no_bar_of_its_own(capfd: pytest.CaptureFixture
     other.join()
     assert seen == [False]
     assert "inner" not in capfd.readouterr().err
+
+
+def test_a_call_that_shows_nothing_silences_the_calls_within() -> None:
+    with in_turn(False):
+        assert not _is_shown()
+    with in_turn(lambda stage, share: None):
+        assert not _is_shown()
+
+
+def test_a_watcher_hears_of_the_outermost_call_alone() -> None:
+    stages: list[str] = []
+    with watched_by(lambda stage, share: stages.append(stage)), in_turn(None) as outer:
+        outer("a file")
+        with in_turn(None) as inner:
+            inner("a fit of it")
+    assert stages == ["a file"]
+
+
+def test_a_fit_tells_how_often_it_evaluated_the_model() -> None:
+    gear, speed = sw.load("hfuc-25-100"), [1.0, 5.0, 20.0, 50.0]
+    table = sw.Recording({"speed": speed, "torque": gear.friction_input.steady(speed)}, {"speed": "rad/s", "torque": "N.m"})
+    stages: list[str] = []
+    found = sw.fit(gear, table, ["friction_input.viscous"], progress=lambda stage, share: stages.append(stage))
+    assert stages == [f"fitting, evaluation {number + 1}" for number in range(len(stages))]
+    assert sw.fit(gear, table, ["friction_input.viscous"], progress=False) == found
 
 
 def _is_shown() -> bool:

@@ -3,10 +3,26 @@
 
 namespace strainwave::compensation {
 
+/// What every compensator is that does nothing: feed-forward, dither, observer or learning.
 template <class S>
-struct NoFeedforward {
-    static constexpr auto name = "no_feedforward";
+struct None {
+    using Base = None;
+    using State = Stateless<S>;
+
     static constexpr auto source = "definition";
+
+    template <class Self, class Visit>
+    static constexpr void fields(Self&, Visit&&) {}
+
+    static constexpr bool active() { return false; }
+    constexpr RequestAndState<S, State> step(const State&, const control::Command<S>&, const S&) const { return {}; }
+    constexpr Request<S> request(const State&, const Inputs<S>&) const { return {}; }
+    constexpr State advance(const State&, const Inputs<S>&, const Request<S>&, const S&, const S&) const { return {}; }
+};
+
+template <class S>
+struct NoFeedforward : None<S> {
+    static constexpr auto name = "no_feedforward";
     static constexpr auto doc = R"(
         No feed-forward of a model: the controller acts on the error alone.
 
@@ -15,19 +31,11 @@ struct NoFeedforward {
         >>> from strainwave.compensation import NoFeedforward
         >>> NoFeedforward()
         NoFeedforward())";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self&, Visit&&) {}
-
-    using State = Stateless<S>;
-    static constexpr bool active() { return false; }
-    constexpr RequestAndState<S, State> step(const State&, const control::Command<S>&, const S&) const { return {}; }
 };
 
 template <class S>
-struct NoDither {
+struct NoDither : None<S> {
     static constexpr auto name = "no_dither";
-    static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         No dither: no torque swings around zero.
 
@@ -36,19 +44,11 @@ struct NoDither {
         >>> from strainwave.compensation import NoDither
         >>> NoDither()
         NoDither())";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self&, Visit&&) {}
-
-    using State = Stateless<S>;
-    static constexpr bool active() { return false; }
-    constexpr RequestAndState<S, State> step(const State&, const control::Command<S>&, const S&) const { return {}; }
 };
 
 template <class S>
-struct NoObserver {
+struct NoObserver : None<S> {
     static constexpr auto name = "no_observer";
-    static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         No observer: disturbances are not estimated.
 
@@ -57,20 +57,11 @@ struct NoObserver {
         >>> from strainwave.compensation import NoObserver
         >>> NoObserver()
         NoObserver())";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self&, Visit&&) {}
-
-    using State = Stateless<S>;
-    static constexpr bool active() { return false; }
-    constexpr Request<S> request(const State&, const Inputs<S>&) const { return {}; }
-    constexpr State advance(const State&, const Inputs<S>&, const Request<S>&, const S&, const S&) const { return {}; }
 };
 
 template <class S>
-struct NoLearning {
+struct NoLearning : None<S> {
     static constexpr auto name = "no_learning";
-    static constexpr auto source = "definition";
     static constexpr auto doc = R"(
         No learning: errors that repeat with the angle are not corrected.
 
@@ -79,14 +70,6 @@ struct NoLearning {
         >>> from strainwave.compensation import NoLearning
         >>> NoLearning()
         NoLearning())";
-
-    template <class Self, class Visit>
-    static constexpr void fields(Self&, Visit&&) {}
-
-    using State = Stateless<S>;
-    static constexpr bool active() { return false; }
-    constexpr Request<S> request(const State&, const Inputs<S>&) const { return {}; }
-    constexpr State advance(const State&, const Inputs<S>&, const Request<S>&, const S&, const S&) const { return {}; }
 };
 
 }  // namespace strainwave::compensation

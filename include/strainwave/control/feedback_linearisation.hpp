@@ -1,11 +1,10 @@
 #pragma once
 #include <strainwave/control/reference.hpp>
-#include <strainwave/drive_model.hpp>
 
 namespace strainwave::control {
 
 template <class S, class Gear_ = drive_model::PlainGear<S>, class Load_ = drive_model::PlainLoad<S>>
-struct FeedbackLinearisation {
+struct FeedbackLinearisation : OfModelAndReference<S, FeedbackLinearisation<S, Gear_, Load_>> {
     using Gear = Gear_;
     using Load = Load_;
 
@@ -77,31 +76,19 @@ struct FeedbackLinearisation {
         visit(SW_FIELD(m, limit, "1", "Largest actuation, of either sign", smallest));
     }
 
-    constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
-    constexpr S model_ratio() const { return gear.kinematics.ratio(); }
-    constexpr S max_period() const { return reference_time; }
-
     constexpr auto compile() const {
         return FeedbackLinearisation<S, decltype(gear.compile()), decltype(compiled(load))>{
-            gear.compile(), compiled(load),       motor_inertia,       bandwidth,
-            reference_time, actuation_per_torque, actuation_per_speed, limit};
+            {},        gear.compile(), compiled(load),       motor_inertia,
+            bandwidth, reference_time, actuation_per_torque, actuation_per_speed,
+            limit};
     }
 
     using State = ReferenceLags<S>;
 
-    constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
+    constexpr S motor_torque(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const Motion at = motion(command, measured);
-        const S torque = motor_torque(at, measured.input_speed, snap(x, command, measured, at));
-        const S unlimited = actuation_per_torque * torque + actuation_per_speed * measured.input_speed + command.feedforward;
-        return measured.limits.within(limit).limited(unlimited);
+        return motor_torque(at, measured.input_speed, snap(x, command, measured, at));
     }
-    constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
-        return ReferenceMotion<S>(x, command, reference_time).rate();
-    }
-    /// 0, as of an integral: forward differences follow a ramp without error, the exact step of a lag does not.
-    constexpr State relaxation_rate() const { return {}; }
-    /// Rate of the lag over 2.5: a Runge-Kutta step of fourth order is stable up to 2.78 of its time.
-    constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
 
 private:
     static constexpr double share_of_difference = 0.01;  ///< of 1 / bandwidth, over which derivatives are differences

@@ -1,11 +1,10 @@
 #pragma once
 #include <strainwave/control/reference.hpp>
-#include <strainwave/drive_model.hpp>
 
 namespace strainwave::control {
 
 template <class S, class Gear_ = drive_model::PlainGear<S>, class Load_ = drive_model::PlainLoad<S>>
-struct KinematicErrorTracking {
+struct KinematicErrorTracking : OfModelAndReference<S, KinematicErrorTracking<S, Gear_, Load_>> {
     using Gear = Gear_;
     using Load = Load_;
 
@@ -68,32 +67,15 @@ struct KinematicErrorTracking {
         visit(SW_FIELD(m, feedback, "1", "The shaft whose encoder gives the output angle"));
     }
 
-    constexpr Contradiction<S> problem() const { return drive_model::problem_of_motion<S>(gear, load); }
-    constexpr S model_ratio() const { return gear.kinematics.ratio(); }
-    constexpr S max_period() const { return reference_time; }
-
     constexpr auto compile() const {
         return KinematicErrorTracking<S, decltype(gear.compile()), decltype(compiled(load))>{
-            gear.compile(), compiled(load),       motor_inertia,       bandwidth, speed_gain,
-            reference_time, actuation_per_torque, actuation_per_speed, limit,     feedback};
+            {},         gear.compile(), compiled(load),       motor_inertia,       bandwidth,
+            speed_gain, reference_time, actuation_per_torque, actuation_per_speed, limit,
+            feedback};
     }
 
     using State = ReferenceLags<S>;
 
-    constexpr S act(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
-        const S unlimited = actuation_per_torque * motor_torque(x, command, measured) + actuation_per_speed * measured.input_speed +
-                            command.feedforward;
-        return measured.limits.within(limit).limited(unlimited);
-    }
-    constexpr State rate(const State& x, const Command<S>& command, const Measurement<S>&) const {
-        return ReferenceMotion<S>(x, command, reference_time).rate();
-    }
-    /// 0, as of an integral: forward differences follow a ramp without error, the exact step of a lag does not.
-    constexpr State relaxation_rate() const { return {}; }
-    /// Rate of the lag over 2.5: a Runge-Kutta step of fourth order is stable up to 2.78 of its time.
-    constexpr S fastest() const { return S(1.0 / 2.5) / reference_time; }
-
-private:
     constexpr S motor_torque(const State& x, const Command<S>& command, const Measurement<S>& measured) const {
         const auto error = drive_model::error_with_curvature<S>(gear, measured.input_angle);
         const S inverse = S(1.0) / command.ratio, per_input = inverse - error.slope;

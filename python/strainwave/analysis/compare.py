@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
 from strainwave._core import Gear
+from strainwave.analysis.torsion_loop import SHARES_OF_TORQUE, loop_sigma, measured_torque, torsion_loop
 from strainwave.files.described import parameters, parts
 from strainwave.files.gear_file import at
 from strainwave.files.gear_set import GearSet
@@ -114,7 +115,8 @@ class Difference(Statement):
     """A place where two models differ.
 
     Attributes:
-        path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", or of a rating
+        path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", of a rating, or a place of the
+            torsion loop in words
         first, second: the numbers, or the models' names; None where one of them does not have it
         unit: of the numbers, empty for names
         sigma: standard deviation of the second less the first, as if they were independent; None unless both sets state one
@@ -184,7 +186,30 @@ def differences(first: Model, second: Model) -> list[Difference]:
             one, other = first.sources[each.path].sigma(each.first), second.sources[each.path].sigma(each.second)
             if one is not None and other is not None:
                 differing[place] = replace(each, sigma=hypot(one, other))
-    return differing + _ratings(first, second)
+    of_ratings = _ratings(first, second)
+    return _with_loop(differing, first, second) + of_ratings
+
+
+def _with_loop(differing: list[Difference], first: GearSet, second: GearSet) -> list[Difference]:
+    """Return differences with those of the torsion loop in place of those of single elements of hysteresis, if any differ.
+
+    The loop goes to the smaller of the torques that both gears were measured or are rated to.
+    """
+    torques = [torque for each in (first, second) if (torque := measured_torque(each))]
+    if len(torques) < 2 or not any(each.path.startswith(("gear.hysteresis", "gear.stiffness")) for each in differing):
+        return differing
+    torque = min(torques)
+    one, other = (torsion_loop(each.gear, torque).tolist() for each in (first, second))
+    sigmas = [loop_sigma(each, torque) for each in (first, second)]
+    both = None if sigmas[0] is None or sigmas[1] is None else np.hypot(sigmas[0], sigmas[1])
+    names = [(f"twist falling through {share * torque:.4g} N.m", "rad") for share in SHARES_OF_TORQUE] + [("loss", "J")]
+    loop = [
+        Difference(
+            f"loop to {torque:.4g} N.m: {name}", one[place], other[place], unit, None if both is None else float(both[place])
+        )
+        for place, (name, unit) in enumerate(names)
+    ]
+    return [*(each for each in differing if not each.path.startswith("gear.hysteresis.")), *loop]
 
 
 def _parts(model: Model) -> dict[str, Any]:
@@ -238,7 +263,9 @@ def compare(first: Any, second: Any, names: Sequence[str] | None = None) -> Any:
 
     Of recordings each column that both have is compared, over the time that both cover: the second is read off at the samples
     of the first, between its own on a straight line. Columns of other units are converted. Of models all numbers are compared,
-    and which law stands at which place; of a gear and a drive the gear. Of two sets the ratings are compared, too.
+    and which law stands at which place; of a gear and a drive the gear. Of two sets the ratings are compared, too. Elements of
+    hysteresis are not unique: of two sets the torsion loop is compared in their place, to a torque that both were measured or
+    are rated to.
 
     Args:
         first, second: two recordings with the column `time`; or two of gear, drive and set

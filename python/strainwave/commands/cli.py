@@ -31,6 +31,7 @@ from strainwave.commands.plan import plan
 from strainwave.commands.predict import predict
 from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
+from strainwave.commands.studio import studio
 from strainwave.commands.workbench import workbench
 from strainwave.messages import one_line, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError, added_to
@@ -46,6 +47,7 @@ HEADINGS: dict[str, dict[str, Any]] = {
         "list": list_command,
         "show": show,
         "workbench": workbench,
+        "studio": studio,
         "docs": docs,
         "doctor": doctor,
     },
@@ -110,7 +112,7 @@ def main() -> None:
     """
     asked = list[str]()
     while True:
-        code, question = _run()
+        code, question = run()
         if question is None:
             sys.exit(code)
         if question.question in asked:
@@ -122,7 +124,7 @@ def main() -> None:
         sys.argv[1:] = words
 
 
-def _run() -> tuple[int, QuestionError | None]:
+def run() -> tuple[int, QuestionError | None]:
     """Run the command once and print its output. Return the exit code, and the question that a file leaves open."""
     output, question = StringIO(), None
     try:

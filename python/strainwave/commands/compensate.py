@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from strainwave.commands.options import Drive, folder, numeric, whole
+from strainwave.commands.output import write_report
 
 
 def compensate(
@@ -34,7 +35,6 @@ def compensate(
         strainwave compensate gear.toml --goal speed --members 5
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.files.writing import write_folder
     from strainwave.report.compensate import compensate_files, compensate_summary
     from strainwave.report.provenance import Provenance
     from strainwave.tuning.compensate import compensate as compensated
@@ -44,6 +44,4 @@ def compensate(
         torque=torque, members=members, seed=seed,
     )  # fmt: skip
     files = compensate_files(found, Provenance.of_this_command([Path(drive)] if Path(drive).is_file() else []))
-    write_folder(out, files)
-    print(compensate_summary(found))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    write_report(out, files, compensate_summary(found))

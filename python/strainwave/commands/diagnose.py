@@ -13,6 +13,7 @@ from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.help import Verbs
 from strainwave.commands.options import Drive, folder, numeric, with_groups
+from strainwave.commands.output import write_report
 from strainwave.diagnose.detection import DETECTION_PROBABILITY, FALSE_ALARM
 from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS, QuestionError
@@ -77,7 +78,6 @@ def joint(
         strainwave diagnose joint robot_log_later.csv --gear gear.toml \
           --baseline robot_log.csv
     """
-    from strainwave.files.writing import write_folder
     from strainwave.identification.reading.source import distinct_names, measurement_files
     from strainwave.report.diagnose import diagnose_files, diagnose_summary
     from strainwave.report.provenance import Provenance
@@ -100,9 +100,7 @@ def joint(
         found = [_of_joint(joint, files, healthy, names, mapping, question, rate, turn) for joint in joints]
         turn("report")
         written = diagnose_files(found, Provenance.of_this_command(read), by_name)
-        write_folder(out, written)
-    print(diagnose_summary(found))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(written)[:-1])}")
+    write_report(out, written, diagnose_summary(found))
     if any(each.alarms for each in found):
         raise typer.Exit(exit_codes.RESULT_CONTRADICTED)
 
@@ -135,7 +133,6 @@ def limit(
     from strainwave.commands.options import number_option
     from strainwave.diagnose.smallest_error import detection_limit
     from strainwave.files.gear_set import GearSet
-    from strainwave.files.writing import write_folder
     from strainwave.report.diagnose_plan import PlannedRecord, plan_files, plan_summary
     from strainwave.report.provenance import Provenance
 
@@ -153,9 +150,7 @@ def limit(
                 )
             )  # fmt: skip
     files = plan_files(record, limits, Provenance.of_this_command([]))
-    write_folder(out, files)
-    print(plan_summary(record, limits))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    write_report(out, files, plan_summary(record, limits))
 
 
 def _question(

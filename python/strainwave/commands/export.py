@@ -169,6 +169,7 @@ def firmware(
         strainwave export firmware robot-joint
         strainwave export firmware hfuc-20-80 --part gear.friction_input
     """
+    from strainwave.export.exported import valid_ranges
     from strainwave.export.firmware import firmware as exported
     from strainwave.files.gear_set import GearSet
 
@@ -177,6 +178,7 @@ def firmware(
     for kind in ("inputs", "outputs"):
         print(f"{kind}: {', '.join(getattr(written, kind))}")
     print(f"size of the state: {len(written.state)}")
+    print("".join(f"{each}\n" for each in valid_ranges(found)), end="")
     every = f", to be called every {written.period:g} s" if written.period else ""
     files = (written.header, written.declarations, written.source, written.example)
     if report:

@@ -11,6 +11,7 @@ import typer
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, Gear, paths_in
 from strainwave.commands.options import folder, with_groups
+from strainwave.commands.output import write_report
 from strainwave.progress import in_turn
 from strainwave.questions import ALL_JOINTS
 
@@ -64,7 +65,6 @@ def _one_gear(
     gear: str, opened: MeasurementFiles, mapping: Callable[[Path], FileMapping], accept: bool, name: str | None, out: Path
 ) -> bool:
     """Write and print the gear of all files. Return True if a check fails."""
-    from strainwave.files.writing import write_folder
     from strainwave.identification.identify import identify as identified
     from strainwave.identification.results.drive import not_written
     from strainwave.report.first_screen import next_lines
@@ -74,9 +74,7 @@ def _one_gear(
     read = paths_in(opened)
     found = identified(gear, opened, mapping=mapping, accept=accept, name=name)
     files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
-    write_folder(out, files)
-    print("\n".join(identify_summary(found)))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(name for name in files if not name.endswith('.html'))}")
+    write_report(out, files, "\n".join(identify_summary(found)))
     if "gear.toml" in files:
         if lacking := not_written(found.files):
             print(f"gear.toml: {found.gear_set.name}, {lacking}")

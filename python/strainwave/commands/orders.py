@@ -10,6 +10,7 @@ import typer
 
 from strainwave.commands.file_options import FileOptions
 from strainwave.commands.options import folder, numeric, with_groups
+from strainwave.commands.output import write_report
 from strainwave.progress import in_turn
 
 if TYPE_CHECKING:
@@ -38,7 +39,6 @@ def orders(
     """
     from strainwave.arguments import number
     from strainwave.files.gear_set import catalogue
-    from strainwave.files.writing import write_folder
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.identification.reading.source import measurement_files
     from strainwave.messages import one_line
@@ -69,9 +69,7 @@ def orders(
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         turn("report")
         files = orders_files(found, Provenance.of_this_command(paths))
-        write_folder(out, files)
-    print(orders_summary(found))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    write_report(out, files, orders_summary(found))
 
 
 def _of_file(

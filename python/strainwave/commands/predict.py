@@ -10,6 +10,7 @@ import typer
 from strainwave import exit_codes
 from strainwave.commands.file_options import FileOptions, paths_in
 from strainwave.commands.options import folder, with_groups
+from strainwave.commands.output import write_report
 
 
 @with_groups
@@ -30,7 +31,6 @@ def predict(
         strainwave predict gear.toml friction.csv
     """
     from strainwave.files.gear_set import GearSet
-    from strainwave.files.writing import write_folder
     from strainwave.identification.predict import predict as predicted
     from strainwave.identification.reading.source import measurement_files
     from strainwave.report.predict import predict_files, predict_summary
@@ -40,8 +40,6 @@ def predict(
     read = paths_in(opened)
     found = predicted(gear, opened, mapping=given.mapping_of(opened.files))
     files = predict_files(found, saved, Provenance.of_this_command(read))
-    write_folder(out, files)
-    print(predict_summary(found))
-    print(f"\nwrote {out / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    write_report(out, files, predict_summary(found))
     if any(each.contradicts for each in found):
         raise typer.Exit(exit_codes.RESULT_CONTRADICTED)

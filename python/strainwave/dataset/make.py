@@ -233,16 +233,21 @@ class CostEstimate(Presented):
         return self.members * self.seconds_per_member / self.workers
 
 
-def estimate(shards: Shards, folder: Path, workers: int, shards_left: int | None = None) -> CostEstimate:
+def estimate(
+    shards: Shards, folder: Path, workers: int, shards_left: int | None = None, progress: Progress = None
+) -> CostEstimate:
     """Return what a plan takes, measured on a pilot; refuse it if it does not fit on the disk."""
     population, plan = shards.population, shards.plan
     _check_disk(folder, MIN_BYTES_PER_NUMBER * plan.members * len(population.features.signals), "at least")
     population.check()
     prepare_kernel(population)
     count = min(PILOT_MEMBERS, plan.members_per_condition, plan.shard_members)
-    shards.tables(0, count)  # once for what only a first run does
-    begin = time.process_time()
-    table, samples = shards.tables(0, count)
+    with in_turn(progress, 2) as turn:
+        turn("preparing a pilot")
+        shards.tables(0, count)  # once for what only a first run does
+        turn("running the pilot")
+        begin = time.process_time()
+        table, samples = shards.tables(0, count)
     seconds = (time.process_time() - begin) / count
     whole = sum(_bytes(each, plan, count) for each in (table, samples) if each is not None)
     left = plan.shards if shards_left is None else shards_left
@@ -294,7 +299,7 @@ def make(
     shards = Shards(Population(DatasetPlan.read(plan)))
     target = DatasetFolder(Path(folder))
     count = workers or available_threads()
-    cost = estimate(shards, target.path, count, shards.plan.shards - target.done())
+    cost = estimate(shards, target.path, count, shards.plan.shards - target.done(), progress)
     with making(target.path), claiming(target.path):
         target.begin(shards.plan, text, manifest(shards, cost.schema), card(shards, cost.schema))
         if target.is_finished and target.done() == shards.plan.shards:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import hypot, inf, pi, sqrt, tau
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from strainwave.files.recording import Recording
 from strainwave.files.typical_gear import RAD_PER_ARCMIN
 from strainwave.messages import listed
 from strainwave.presentation import Presented
+from strainwave.progress import Progress, in_turn
 from strainwave.simulation.run import simulate
 from strainwave.simulation.scenario import constant, ramp
 from strainwave.simulation.signals import outputs
@@ -98,7 +100,10 @@ class SteadyRun:
 
     def with_error(self, amplitude: float, phase: float = 0.0) -> Recording:
         """Return the record of a run with an error of the order, after the run-in: amplitude at the output, phase [rad]."""
-        law = kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase])
+        return self.with_law(kinematic_error.Fourier(order=[self.order], amplitude=[amplitude], phase=[phase]))
+
+    def with_law(self, law: Any) -> Recording:
+        """Return the record of a run with a law of the kinematic error in place of the drive's own, after the run-in."""
         drive = self.drive.replace({ERROR_PATH: law})
         ratio = float(drive.gear.kinematics.ratio)
         output = self.speed / abs(ratio)
@@ -246,6 +251,7 @@ def detection_limit(
     false_alarm: float = FALSE_ALARM,
     accuracy: float = MAX_CATALOGUE_AMPLITUDE,
     tests: int = 1,
+    progress: Progress = None,
 ) -> DetectionLimit:
     """Return the smallest kinematic error of an order that the motor current shows, for this drive and this record.
 
@@ -263,6 +269,7 @@ def detection_limit(
         false_alarm: probability of an alarm without error, over all tests
         accuracy: amplitude of the error that this gear may have [rad]; beyond it the run is insensitive
         tests: number of orders that are looked for together
+        progress: as of `sw.simulate`
 
     Returns:
         The limit and what it follows from.
@@ -295,16 +302,19 @@ def detection_limit(
     false_alarm = arguments.probability("false_alarm", false_alarm)
     accuracy = arguments.number("accuracy", accuracy, "rad", low=0.0)
     tests = arguments.whole("tests", tests, 1)
-    healthy = RecordedOrder.of(run.with_error(0.0), order)
-    sigma = healthy.sigma(hypot(noise, healthy.own_noise))
-    needed = needed_signal_to_noise(probability, false_alarm, healthy.regression.freedom, tests)
-    gain, limit, before = 0.0j, FIRST_PROBE, inf
-    for _ in range(PROBE_RUNS):
-        probe = min(max(limit, MIN_PROBE), MAX_PROBE)
-        if abs(probe - before) < MIN_PROBE_CHANGE * probe:
-            break
-        before, gain = probe, run.gain(healthy, probe)
-        limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
+    with in_turn(progress, PROBE_RUNS + 1) as turn:
+        turn("without error")
+        healthy = RecordedOrder.of(run.with_error(0.0), order)
+        sigma = healthy.sigma(hypot(noise, healthy.own_noise))
+        needed = needed_signal_to_noise(probability, false_alarm, healthy.regression.freedom, tests)
+        gain, limit, before = 0.0j, FIRST_PROBE, inf
+        for _ in range(PROBE_RUNS):
+            probe = min(max(limit, MIN_PROBE), MAX_PROBE)
+            if abs(probe - before) < MIN_PROBE_CHANGE * probe:
+                break
+            turn(f"with an error of {probe:.2g} rad")
+            before, gain = probe, run.gain(healthy, probe)
+            limit = sigma * needed / abs(gain) if abs(gain) > 0.0 else inf
     detected = DetectionLimit(
         order=order,
         amplitude=limit,

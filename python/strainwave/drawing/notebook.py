@@ -8,10 +8,8 @@ from html import escape
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
-from strainwave import typeset
 from strainwave.drawing import svg
 from strainwave.messages import one_line
-from strainwave.presentation import MAX_PRINTED_ROWS, Row, number_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -23,28 +21,37 @@ COLOURS = {
 }  # fmt: skip
 
 
-def html(kind: str, headline: str, rows: Sequence[Row], remarks: Sequence[str], figure: Figure | None) -> str:
-    """Return a result as HTML: headline, table, remarks and picture. All texts are escaped."""
+def html(
+    kind: str, headline: str, rows: Sequence[Sequence[str]], more: int, remarks: Sequence[str], figure: Figure | None
+) -> str:
+    """Return a result as HTML: headline, table, remarks and picture. All texts are escaped.
+
+    Args:
+        kind, headline: of the result
+        rows: cells of the table: name, number, unit and note, or name and text
+        more: count of rows that the table leaves out
+        remarks: sentences below it
+        figure: picture below them
+    """
     style = "; ".join(f"--{name}: {colour}" for name, colour in COLOURS.items())
-    more = len(rows) - MAX_PRINTED_ROWS
     parts = [
         f"<p><strong>{_text(kind)}</strong> {_text(headline)}</p>",
-        f'<div style="overflow-x: auto"><table>{"".join(map(_row, rows[:MAX_PRINTED_ROWS]))}</table></div>' if rows else "",
-        f"<p>… and {more} more: <code>to_dict()</code> has all</p>" if more > 0 else "",
+        f'<div style="overflow-x: auto"><table>{"".join(map(_row, rows))}</table></div>' if rows else "",
+        f"<p>… and {more} more: <code>to_dict()</code> has all</p>" if more else "",
         *(f"<p><em>{_text(remark)}</em></p>" for remark in remarks),
         "" if figure is None else f'<div style="max-width: 36em">{_drawing(figure, f"{kind} {headline}")}</div>',
     ]
     return f'<div class="strainwave" style="{style}">{"".join(parts)}</div>'
 
 
-def _row(row: Row) -> str:
+def _row(cells: Sequence[str]) -> str:
     left = 'style="text-align: left"'
     last = 'style="text-align: left; width: 100%"'  # takes what a text is wider than the other columns
-    name = f"<th {left}>{_text(row.name)}</th>"
-    if isinstance(row.value, str):
-        return f'<tr>{name}<td colspan="3" {left}>{_text(", ".join(filter(None, (row.value, row.note))))}</td></tr>'
-    number = f'<td style="text-align: right; white-space: nowrap">{_text(number_text(row))}</td>'
-    return f"<tr>{name}{number}<td {left}>{_text(typeset.unit(row.unit))}</td><td {last}>{_text(row.note)}</td></tr>"
+    name, value, *rest = map(_text, cells)
+    if not rest:
+        return f'<tr><th {left}>{name}</th><td colspan="3" {left}>{value}</td></tr>'
+    number = f'<td style="text-align: right; white-space: nowrap">{value}</td>'
+    return f"<tr><th {left}>{name}</th>{number}<td {left}>{rest[0]}</td><td {last}>{rest[1]}</td></tr>"
 
 
 def _text(text: str) -> str:

@@ -17,6 +17,7 @@ from strainwave.export.exported import Exported, Form, stating_origins
 from strainwave.export.joint_numbers import left_out_if_rigid
 from strainwave.files.budget import read_text
 from strainwave.files.gear_set import GearSet, gear_set_of
+from strainwave.files.labels import read_by_others
 from strainwave.messages import listed, one_line, quoted
 from strainwave.tuning.cascade import torque_constant
 
@@ -132,7 +133,8 @@ def read_bam(path: str | Path, ratio: float) -> GearSet:
     ('joint', 0.09)
     """
     path, ratio = Path(path), abs(arguments.ratio("ratio", ratio))
-    text = read_text(path, MAX_BYTES)
+    with read_by_others(path, "JSON"):
+        text = read_text(path, MAX_BYTES)
     try:
         content = json.loads(text)
         if not isinstance(content, dict):

@@ -135,7 +135,7 @@ class GearElements:
             ValueError: neither a torque nor a rating is given
         """
         rotor = float(getattr(gear_set.motor, "inertia", 0.0))
-        return cls.of(gear_set.gear, rotor, _max_torque(gear_set, max_torque), _max_speed(gear_set))
+        return cls.of(gear_set.gear, rotor, _max_torque(gear_set, max_torque), max_speed_of(gear_set))
 
     @classmethod
     def of(cls, gear: Gear, rotor_inertia: float, max_torque: float, max_speed: float) -> GearElements:
@@ -296,6 +296,14 @@ def max_torque_of(model: object, max_torque: float | None) -> float | None:
     return rated_torque(model) if isinstance(model, GearSet) else None
 
 
+def max_speed_of(gear_set: GearSet) -> float:
+    """Return the largest speed of the input among the ratings of a gear [rad/s], or `DEFAULT_INPUT_SPEED` without one."""
+    for name in MAX_SPEEDS:
+        if rating := gear_set.ratings.get(name):
+            return convert(rating.value, rating.unit, "rad/s")
+    return DEFAULT_INPUT_SPEED
+
+
 def _max_torque(gear_set: GearSet, given: float | None) -> float:
     found = max_torque_of(gear_set, given)
     if found is not None:
@@ -306,13 +314,6 @@ def _max_torque(gear_set: GearSet, given: float | None) -> float:
         numbers={"max_torque": "largest torque at the output [N.m]"},
     )
     raise QuestionError(f"{gear_set.name} has no rating {MAX_TORQUES[0]}, so the range of its torsion is not known", [largest])
-
-
-def _max_speed(gear_set: GearSet) -> float:
-    for name in MAX_SPEEDS:
-        if rating := gear_set.ratings.get(name):
-            return convert(rating.value, rating.unit, "rad/s")
-    return DEFAULT_INPUT_SPEED
 
 
 def _twist_at(gear: Gear, torque: float) -> float:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from importlib import resources
@@ -114,7 +114,7 @@ def mujoco_plugin(
         gears = gears_of_joints(robot, joint, gear_set)
         plugins = [
             _Plugin.of(each, name if number == 1 else f"{name}_{number}", max_torque, command, step)
-            for number, each in enumerate(_distinct(gears.values()), start=1)
+            for number, each in enumerate({id(each): each for each in gears.values()}.values(), start=1)
         ]
         plugin_of = {shaft: next(each for each in plugins if each.gear_set is gear) for shaft, gear in gears.items()}
         twists = list[Twist]()
@@ -205,11 +205,6 @@ class _Plugin:
             "inertia_there": (inertia, "kg.m2"),
             "internal_step": (self.step, "s"),
         }
-
-
-def _distinct(gears: Iterable[GearSet]) -> list[GearSet]:
-    """Return gears that are different objects, in their order."""
-    return list({id(each): each for each in gears}.values())
 
 
 def installed_mujoco() -> tuple[Path, str]:

@@ -102,7 +102,12 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
     files = {path: _commented(path, content, lines) for path, content in found.files.items()}
     if lines and files == found.files:
         files[ORIGINS_FILE] = "\n".join(lines) + "\n"
-    return replace(found, files=files, remarks=(*found.remarks, *remarks))
+    return replace(found, files=files, remarks=(*found.remarks, *remarks, *valid_ranges(gear_set)))
+
+
+def valid_ranges(gear_set: GearSet) -> list[str]:
+    """Return sentences about the range in which an export of a gear is valid; none if nothing states where it was measured."""
+    return [f"valid where the gear was measured, by {each}" for each in gear_set.measured_ranges]
 
 
 def _commented(path: str, content: str | bytes, lines: Sequence[str]) -> str | bytes:

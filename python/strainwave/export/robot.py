@@ -19,6 +19,7 @@ from strainwave.export.coupled import MAX_STABLE_SHARE
 from strainwave.files.budget import read_text
 from strainwave.files.folder import inside
 from strainwave.files.gear_set import GearSet, gear_set_of
+from strainwave.files.labels import read_by_others
 from strainwave.messages import listed, quoted
 
 Element = ElementTree.Element
@@ -334,7 +335,9 @@ def _joints_of(body: Element) -> Iterator[Element]:
 
 def _read(path: Path) -> Element:
     """Return the model of a file, which finds its meshes and textures from any folder."""
-    root = _whole(_parsed(read_text(path, MAX_MODEL_BYTES)), path)
+    with read_by_others(path, "text"):
+        text = read_text(path, MAX_MODEL_BYTES)
+    root = _whole(_parsed(text), path)
     compilers = root.findall("compiler")
     if root.find("asset/*[@file]") is not None:
         stated = {key: value for each in compilers for key, value in each.attrib.items()}
@@ -365,7 +368,8 @@ def _whole(root: Element, path: Path | None) -> Element:
         if file in files or len(files) == MAX_INCLUDED_FILES:
             raise ValueError(f"the model includes {quoted(file.name)} twice, or more than {MAX_INCLUDED_FILES} files")
         files.add(file)
-        text = read_text(file, room)
+        with read_by_others(file, "text"):
+            text = read_text(file, room)
         room -= len(text)
         parent[place : place + 1] = list(_xml(text))
     _check_depth(root)

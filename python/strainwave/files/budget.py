@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO
 
-from strainwave.messages import one_line
 from strainwave.operating_system import READ_FLAGS
 
 MIN_ALLOWED_BYTES = 2**28  # any file may expand to this: 33 million numbers
@@ -131,16 +130,14 @@ def read_regular(path: str | Path, max_bytes: int = MAX_ALLOWED_BYTES) -> bytes:
 
 
 def read_text(path: str | Path, max_bytes: int) -> str:
-    """Read a text in UTF-8 of at most `max_bytes` from a regular file.
+    """Read a text in UTF-8 of at most `max_bytes` from a regular file, with `\\n` at the end of each line, whatever ended it.
 
     Raises:
-        ValueError: it cannot be read; states the file and the reason
+        RefusedFile: it is no regular file, a larger one, one that grows, or no text in UTF-8
+        OSError: there is no such file, or it may not be read
     """
     try:
-        return read_regular(path, max_bytes).decode("utf-8-sig")
-    except RefusedFile as error:
-        raise ValueError(one_line(f"{path} {error}")) from None
-    except OSError as error:
-        raise ValueError(one_line(f"{path} cannot be read: {error.strerror}")) from None
+        text = read_regular(path, max_bytes).decode("utf-8-sig")
     except UnicodeError:
-        raise ValueError(one_line(f"{path} is not a text in UTF-8")) from None
+        raise RefusedFile("is not a text in UTF-8") from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")

@@ -36,6 +36,11 @@ def default_of(model: Any, name: str) -> Any:
     return next(field["default"] for field in model.fields if field["name"] == name)
 
 
+def is_required(model: Any, name: str) -> bool:
+    """True for a parameter that whoever makes the model must give."""
+    return any(field["name"] == name and field["required"] for field in model.fields)
+
+
 def optional(model: Any) -> frozenset[str]:
     """Return the numbers of a model, or of a class of models, that a file may leave out: by default they have no effect."""
     return frozenset(field["name"] for field in model.fields if field.get("optional"))

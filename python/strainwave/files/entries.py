@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 import reprlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
-from math import hypot, isfinite
+from math import hypot
 from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
 
 from strainwave import arguments
+from strainwave.files import figures
 from strainwave.files.described import parameters, parts
-from strainwave.files.units import base_exponents, check, check as check_unit, convert, plain_unit
-from strainwave.messages import quoted, shortened
+from strainwave.files.units import check as check_unit, convert
+from strainwave.messages import shortened
 
 if TYPE_CHECKING:
     from pydantic_core import ErrorDetails
@@ -109,14 +109,6 @@ def check_line(name: str, text: str) -> None:
 
 
 Figure = float | str | Quantity
-MAX_FIGURE_LETTERS = 200  # characters of a figure: its pattern takes quadratic time
-
-_RAISED_DIGITS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−", "0123456789--")
-_WRITTEN_FIGURE = re.compile(
-    r"(?P<number>[+-]?(?:[0-9]+(?:[.,][0-9]+)?|\.[0-9]+))(?:[eE](?P<exponent>[+-]?[0-9]{1,6}))?"
-    r"(?:\s*[x×·*]?\s*10(?:\^(?P<power>[+-]?[0-9]{1,6})|(?P<raised>⁻?[⁰¹²³⁴-⁹]{1,3})))?"
-    r"\s*(?P<unit>.*)"
-)
 
 
 def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
@@ -141,67 +133,12 @@ def quantity_of(name: str, given: Figure, unit: str, source: str) -> Quantity:
     if isinstance(given, Quantity):
         quantity = given
     elif isinstance(given, str):
-        quantity = _read(name, given.strip().removeprefix("<").removeprefix("≤"), unit, source)
+        number, written_unit = figures.read(name, given.strip().removeprefix("<").removeprefix("≤"), unit)
+        quantity = Quantity(value=number, unit=written_unit, source=source)
     else:
         quantity = Quantity(value=arguments.number(name, given, unit), unit=unit, source=source)
-    _figure_in(name, quantity, unit)
+    figures.converted(name, quantity.value, quantity.unit, unit)  # refuses what measures something else
     return quantity
-
-
-def number_of(name: str, text: str, unit: str) -> float:
-    """Return the number of a text with a unit, in `unit`.
-
-    >>> number_of("torque_constant", "75 mN.m/A", "N.m/A")
-    0.075
-
-    Raises:
-        ValueError: as `quantity_of`
-    """
-    return _figure_in(name, _read(name, text, unit, "argument"), unit).value
-
-
-def written_figure(name: str, text: str) -> tuple[float, str]:
-    """Return the number of a text in SI units, and its unit: of counts rev, of a share that of the rated value.
-
-    >>> number, unit = written_figure("amplitude", "90 deg")
-    >>> round(number, 4), unit
-    (1.5708, 'deg')
-
-    Raises:
-        ValueError: the text is no number with a known unit
-    """
-    written = _read(name, text, "deg", "argument")
-    base = ".".join(f"{symbol}{power}" for symbol, power in base_exponents(written.unit)[1].items())
-    return _figure_in(name, written, base or "1").value, plain_unit(written.unit)
-
-
-def _figure_in(name: str, quantity: Quantity, unit: str) -> Quantity:
-    try:
-        return quantity.to(unit)
-    except ValueError as error:
-        raise ValueError(f'{name}: {error}; write a number and its unit, as "1.2 {unit}"') from None
-
-
-def _read(name: str, text: str, unit: str, source: str) -> Quantity:
-    if len(text) > MAX_FIGURE_LETTERS:
-        raise ValueError(f"{name} = {quoted(text)} has {len(text)} characters; a figure has at most {MAX_FIGURE_LETTERS}")
-    written = _WRITTEN_FIGURE.fullmatch(text.strip())
-    if written is None:
-        raise ValueError(f'{name} = {quoted(text)} must be a number and its unit, as "1.2 {unit}"')
-    number = written["number"]
-    if re.fullmatch(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}", number):
-        raise ValueError(f"{name} = {quoted(text)}: the comma may separate thousands or decimals; write a point, or none")
-    power = (written["raised"] or written["power"] or "0").translate(_RAISED_DIGITS)
-    value = float(f"{number.replace(',', '.')}e{int(power) + int(written['exponent'] or 0)}")
-    if not written["unit"] and unit != "1":
-        raise ValueError(f'{name} = {quoted(text)} has no unit; write a number and its unit, as "1.2 {unit}"')
-    if not isfinite(value):
-        raise ValueError(f"{name} = {quoted(text)} must be finite")
-    try:
-        standard = check(written["unit"] or "1")
-    except ValueError as error:
-        raise ValueError(f'{name} = {quoted(text)}: {error}; write a number and its unit, as "1.2 {unit}"') from None
-    return Quantity(value=value, unit=standard, source=source)
 
 
 # ---- Forms -----------------------------------------------------------------------------------------------------------

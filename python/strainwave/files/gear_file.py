@@ -94,10 +94,21 @@ def left_out(gear_set: Contents) -> frozenset[str]:
 
 
 def origins(gear_set: Contents) -> list[str]:
-    """Return lines that state which numbers of a set were identified, and the others; empty if none was."""
+    """Return lines that state which numbers of a set were identified, the others, and where the files were measured.
+
+    Empty if none was identified.
+    """
     names = dict.fromkeys(table.path.partition(".")[0] for table in _tables())
     models = {name: getattr(gear_set, name) for name in names}
-    return origin_lines({name: model for name, model in models.items() if model is not None}, gear_set.sources)
+    lines = origin_lines({name: model for name, model in models.items() if model is not None}, gear_set.sources)
+    if not lines or not (ranges := measured_ranges(gear_set)):
+        return lines
+    return [*lines, "valid where its files were measured; beyond, nothing checks it:", *(f"  {each}" for each in ranges)]
+
+
+def measured_ranges(gear_set: Contents) -> list[str]:
+    """Return the range of speed, torque, angle and temperature of each file that a gear was identified from, in words."""
+    return list(dict.fromkeys(words for each in gear_set.validation if (words := each.range_in_words)))
 
 
 def idle(gear_set: Contents) -> list[str]:
@@ -105,6 +116,17 @@ def idle(gear_set: Contents) -> list[str]:
     filled = list(_filled(gear_set))
     of_parts = [path for table, model in filled if _does_nothing(table, model) for path in own_paths(table.path, model)]
     return of_parts + [path for table, model in filled for name in at_rest(model) for path in _paths_of(table, model, name)]
+
+
+def optional_tables(kind: type[Any]) -> frozenset[str]:
+    """Return the names of the parts of a class of models whose tables a file may leave out.
+
+    >>> import strainwave as sw
+    >>> sorted(set(sw.Gear.fields[i]["name"] for i in range(5)) & optional_tables(sw.Gear))
+    ['hysteresis', 'kinematic_error', 'kinematic_noise']
+    """
+    own = {Gear: [each for each in _tables() if each.in_gear], Drive: [each for each in _tables() if not each.in_gear]}
+    return frozenset(table.name for table in own.get(kind, _inner("", kind)) if not table.required)
 
 
 def at_rest(model: Any) -> list[str]:

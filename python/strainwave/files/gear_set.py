@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, overload, runtime_chec
 
 from strainwave import Drive, arguments, motor as motors
 from strainwave._core import Gear
-from strainwave.files import datasheet, gear_file
-from strainwave.files.described import all_paths, default_of, parts
+from strainwave.files import datasheet, gear_file, harmonic_drive
+from strainwave.files.described import all_paths, default_of, is_required, parts
 from strainwave.files.entries import NOT_GIVEN, Entry, Quantity, check_line
 from strainwave.files.identified_tables import Covariance, Validation, check_identified
 from strainwave.files.tables import FORMATS
@@ -33,12 +33,8 @@ if TYPE_CHECKING:
 Kind = TypeVar("Kind", bound=Entry)
 _DRIVE_PARTS = [field["name"] for field in Drive.fields]
 
-CATALOGUE_FOLDER = Path(__file__).parents[1] / "catalogue"  # of the package
-CATALOGUE_FOLDERS = {"gears": CATALOGUE_FOLDER, "drives": CATALOGUE_FOLDER / "drives"}
-
-
-MAX_LOADED_SETS = 100  # the last ones
-_LOADED_SETS: dict[Gear, GearSet] = {}
+DRIVES_FOLDER = Path(__file__).parents[1] / "catalogue" / "drives"
+BASE_KEY = "base"  # of a file: the set of the catalogue whose tables it has where it has none of its own
 
 
 class Estimated(Protocol):
@@ -146,8 +142,13 @@ class GearSet(Pictured):
 
     @property
     def origins(self) -> list[str]:
-        """Lines that state which numbers were identified, with ±, and the others; empty if none was."""
+        """Lines that state which numbers were identified, with ±, the others, and where; empty if none was."""
         return gear_file.origins(self)
+
+    @property
+    def measured_ranges(self) -> list[str]:
+        """Range of speed, torque, angle and temperature of each file that it was identified from, in words."""
+        return gear_file.measured_ranges(self)
 
     @property
     def left_out(self) -> frozenset[str]:
@@ -211,7 +212,8 @@ class GearSet(Pictured):
 
         Args:
             name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder.
-                A file with a table [datasheet] holds figures of a maker, as `from_datasheet` takes them
+                A file with a table [datasheet] contains figures of a maker, as `from_datasheet` takes them; one with base =
+                "csg-25-100" has the tables of that set where it has none of its own
 
         Returns:
             The set, in SI units. A table left out is the part that does nothing, its sources are "not given".
@@ -224,9 +226,9 @@ class GearSet(Pictured):
         >>> round(gear_set.gear.stiffness.k1), gear_set.motor  # N.m/rad; a catalogue of gears has no motors
         (26700, None)
         """
-        path = _file(name_or_path)
-        with gear_file.at(f"{path}"):
-            content = gear_file.document(path)
+        place = _place(name_or_path)
+        with gear_file.at(f"{place}"):
+            content = _content(place)
             return _of_sheet(datasheet.read(content)) if "datasheet" in content else GearSet(**gear_file.read(content))
 
     @staticmethod
@@ -364,7 +366,9 @@ def catalogue(of: str = "gears") -> list[str]:
     >>> catalogue("drives")[:3]
     ['position-drive', 'position-drive-full-friction', 'position-drive-printed']
     """
-    return sorted(file.stem for file in CATALOGUE_FOLDERS[arguments.one_of("of", of, CATALOGUE_FOLDERS)].glob("*.toml"))
+    if arguments.one_of("of", of, ("gears", "drives")) == "gears":
+        return sorted(harmonic_drive.gears())
+    return sorted(file.stem for file in DRIVES_FOLDER.glob("*.toml"))
 
 
 def gear_set_of(model: GearSet | Drive | Gear | str | Path) -> GearSet:
@@ -387,8 +391,8 @@ def load(name_or_path: str | Path) -> Any:
     """Return the drive of a file that has a motor and a load, else the gear.
 
     A saved gear is loaded as a gear, a saved drive as a drive. If the type must be known beforehand, `GearSet.read(path).gear`
-    is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings; yet the ratings of a file, a data
-    sheet among them, are remembered: `simulate` compares with them every drive that has this gear unchanged.
+    is the gear of any file, and `GearSet.read(path).drive` the drive. Neither has ratings: the set has them, and `simulate`
+    takes a set in place of its drive.
 
     Args:
         name_or_path: a name in `catalogue()` or `catalogue("drives")`, or a path: what ends in .toml or has a folder
@@ -403,26 +407,7 @@ def load(name_or_path: str | Path) -> Any:
     (50000.0, 2.0)
     """
     gear_set = GearSet.read(name_or_path)
-    # Not of the catalogue: hfuc-20-80 and csg-20-80 are the same gear with different ratings.
-    if gear_set.ratings and _file(name_or_path).parent not in CATALOGUE_FOLDERS.values():
-        _LOADED_SETS.pop(gear_set.gear, None)
-        _LOADED_SETS[gear_set.gear] = gear_set
-        if len(_LOADED_SETS) > MAX_LOADED_SETS:
-            del _LOADED_SETS[next(iter(_LOADED_SETS))]
     return gear_set.gear if gear_set.motor is None or gear_set.load is None else gear_set.drive
-
-
-def loaded_set(gear: Gear) -> GearSet | None:
-    """Return the set with ratings that a gear was loaded from; None if it was not loaded from a file with ratings.
-
-    A gear is a value of C++, which a drive copies: it cannot contain its ratings.
-    """
-    return _LOADED_SETS.get(gear) if _LOADED_SETS else None
-
-
-def forget_loaded_sets() -> None:
-    """Forget the sets of all gears that were loaded."""
-    _LOADED_SETS.clear()
 
 
 @overload
@@ -484,6 +469,8 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     entry, (place, _, name) = gear_set.sources[path], path.rpartition(".")
     name, _, index = name.partition("[")
     model = attrgetter(place)(gear_set)
+    if is_required(model, name) and type(model) is not _default_type(gear_set, place):
+        return entry
     value, default = getattr(model, name), default_of(model, name)
     if index:
         number = int(index.removesuffix("]"))
@@ -491,6 +478,12 @@ def _unless_default(gear_set: GearSet, path: str) -> Entry:
     if value != default or entry.assumed:
         return entry
     return Entry(f"assumed: the default, unless given by: {entry.source}")
+
+
+def _default_type(gear_set: GearSet, place: str) -> type[Any]:
+    """Return the type of a part unless another one is given: that part alone has required numbers that nobody gave."""
+    holder, _, name = place.rpartition(".")
+    return type(default_of(attrgetter(holder)(gear_set) if holder else Drive, name))
 
 
 def _named(gear_set: GearSet, sources: Mapping[str, Entry]) -> dict[str, Entry]:
@@ -541,7 +534,29 @@ def _frozen(entries: Mapping[str, Kind], kind: type[Kind]) -> Mapping[str, Kind]
     return MappingProxyType(dict(entries))
 
 
-def _file(name_or_path: str | Path) -> Path:
+def _content(place: str | Path) -> dict[str, Any]:
+    """Return the content of a gear of the catalogue, or of a file, with the tables of the set that the file is based on."""
+    if isinstance(place, str):
+        return harmonic_drive.document(place)
+    content = gear_file.document(place)
+    if BASE_KEY not in content:
+        return content
+    base = arguments.text(BASE_KEY, content.pop(BASE_KEY))
+    of_base = _place_of_set(spelled(base))
+    if of_base is None:
+        raise ValueError(f"{BASE_KEY} = {quoted(base)} is no set of the catalogue, which `strainwave list` lists")
+    return {key: table for key, table in _content(of_base).items() if isinstance(table, dict)} | content
+
+
+def _place_of_set(name: str) -> str | Path | None:
+    """Return the name of a gear of the catalogue, or the file of a drive; None if there is no set of this name."""
+    if name in harmonic_drive.gears():
+        return name
+    return DRIVES_FOLDER / f"{name}.toml" if name in catalogue("drives") else None
+
+
+def _place(name_or_path: str | Path) -> str | Path:
+    """Return the name of a gear of the catalogue, or the path of a file."""
     path = Path(name_or_path)
     if path.suffix.lower() in FORMATS and path.is_file():
         if path.name == "results.json" and (gear := path.with_name(GEAR_FILE)).exists():
@@ -552,21 +567,20 @@ def _file(name_or_path: str | Path) -> Path:
         )
     if isinstance(name_or_path, Path) or path.name != name_or_path or path.suffix == ".toml":
         return path / GEAR_FILE if path.is_dir() else path
-    files = {name: folder / f"{name}.toml" for of, folder in CATALOGUE_FOLDERS.items() for name in catalogue(of)}
     name = spelled(name_or_path)
-    if name not in files and path.is_dir():
+    if (of_set := _place_of_set(name)) is not None:
+        return of_set
+    if path.is_dir():
         return path / GEAR_FILE
-    if name not in files:
-        size, _, ratio = name.rpartition("-")
-        ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
-        near = ", ".join(difflib.get_close_matches(name, files))
-        hint = f"; near it are {near}" if near else ""
-        hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
-        raise ValueError(
-            f"no set {quoted(name_or_path)} in the catalogue{hint}; "
-            'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
-        )
-    return files[name]
+    size, _, ratio = name.rpartition("-")
+    ratios = sorted(int(each.rpartition("-")[2]) for each in catalogue() if each.rpartition("-")[0] == size)
+    near = ", ".join(difflib.get_close_matches(name, catalogue() + catalogue("drives")))
+    hint = f"; near it are {near}" if near else ""
+    hint = f"; {size} has no ratio of {ratio}, but {', '.join(map(str, ratios))}" if ratios and ratio.isdigit() else hint
+    raise ValueError(
+        f"no set {quoted(name_or_path)} in the catalogue{hint}; "
+        'strainwave.catalogue() lists all gears, catalogue("drives") all drives, and the path of a file ends in .toml'
+    )
 
 
 def spelled(name: str) -> str:

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave.files.entries import Form, check_line, checked, schema
 from strainwave.files.units import check as check_unit
-from strainwave.messages import shortened, unquoted
+from strainwave.messages import listed, shortened, unquoted
 
 Array = NDArray[np.float64]
 
 MAX_NUMBERS = 200  # of a covariance: a whole drive has some 60
 MAX_VALIDATIONS = 1000  # files of one gear
+RANGES = {"input_speed": "rad/s", "output_torque": "N.m", "output_angle": "rad", "temperature": "K"}  # and their units
 MAX_ASYMMETRY = 1e-9  # of correlations
 MAX_EXCESS = 1e-6  # of a correlation beyond 1, and of an eigenvalue below 0: more is no rounding
 
@@ -101,9 +102,13 @@ class Validation:
         zero: constant part of the channel that the file contains, as the zero of a sensor
         delay: of the channel behind the motion [s]
         shares: of terms of other joints in the torque of the output, by name, as `cos(2 + 3)` [N.m]
+        measured: smallest and largest value of what the file contains, by the names of `RANGES`
 
     Raises:
-        ValueError: a text is no line of text, the unit is not known, or a number is not finite
+        ValueError: a text is no line of text, the unit is not known, a number is not finite, or a range is none
+
+    >>> Validation("a.csv", "log", "current", "A", 0.1, 1.0, 0.1, 1.0, measured={"input_speed": (-90.0, 120.0)}).range_in_words
+    'a.csv: input speed -90 to 120 rad/s; output torque, output angle, temperature not known'
     """
 
     file: str
@@ -117,6 +122,7 @@ class Validation:
     zero: float = 0.0
     delay: float = 0.0
     shares: Mapping[str, float] = field(default_factory=dict, hash=False)
+    measured: Mapping[str, tuple[float, ...]] = field(default_factory=dict, hash=False)
 
     def __post_init__(self) -> None:
         check_line("file", self.file)
@@ -129,12 +135,29 @@ class Validation:
         arguments.bare_number("delay", self.delay, "s")
         for name, share in self.shares.items():
             arguments.bare_number(f"share of {name}", share, "N.m")
+        for name, ends in self.measured.items():
+            unit = RANGES[arguments.one_of("the name of a range in measured", name, RANGES)]
+            if len(ends) != 2 or not arguments.bare_number(name, ends[0], unit) <= arguments.bare_number(name, ends[1], unit):
+                raise ValueError(f"measured: {name} = {shortened(ends)} must be its smallest and its largest value")
+
+    @property
+    def range_in_words(self) -> str:
+        """The range over which the file was measured; empty if nothing of it is known."""
+        if not self.measured:
+            return ""
+        known = [f"{_words(name)} {low:.3g} to {high:.3g} {RANGES[name]}" for name, (low, high) in self.measured.items()]
+        missing = [_words(name) for name in RANGES if name not in self.measured]
+        return f"{self.file}: {listed(known)}{f'; {listed(missing)} not known' if missing else ''}"
 
     @property
     def relative(self) -> float:
         """The larger of both errors over what the channel varies by there [1]."""
         pairs = ((self.error, self.varies), (self.held_out, self.held_out_varies))
         return max((error / varies for error, varies in pairs if varies > 0.0), default=0.0)
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
 
 
 def check_identified(covariance: object, validation: object, paths: Collection[str]) -> None:
@@ -165,7 +188,12 @@ def read_validation(content: Sequence[Mapping[str, Any]]) -> tuple[Validation, .
     """
     if len(content) > MAX_VALIDATIONS:
         raise ValueError(f"has {len(content)} tables; at most {MAX_VALIDATIONS} are read")
-    return tuple(Validation(**checked(_validation_form(), each)) for each in content)
+    tables = (checked(_validation_form(), each) for each in content)
+    return tuple(Validation(**table | {"measured": _ranges(table["measured"])}) for table in tables)
+
+
+def _ranges(content: Mapping[str, Sequence[float]]) -> dict[str, tuple[float, ...]]:
+    return {name: tuple(ends) for name, ends in content.items()}
 
 
 def covariance_table(covariance: Covariance) -> Any:
@@ -190,7 +218,11 @@ def validation_tables(validation: Sequence[Validation]) -> Any:
     for each in validation:
         table = tomlkit.table()
         for name, value in vars(each).items():
-            if value != {}:
+            if name == "measured" and value:
+                ranges = tomlkit.inline_table()
+                ranges.update({name: list(ends) for name, ends in value.items()})
+                table.add(name, ranges)
+            elif value != {}:
                 table.add(name, value)
         tables.append(table)
     return tables
@@ -206,9 +238,9 @@ def _covariance_form() -> Form:
 @cache
 def _validation_form() -> Form:
     text, number = {"file", "kind", "channel", "unit"}, {"zero": 0.0, "delay": 0.0}
-    names = [each.name for each in fields(Validation) if each.name != "shares"]
+    names = [each.name for each in fields(Validation) if each.name not in ("shares", "measured")]
     keys: dict[str, Any] = {name: (str if name in text else float, number.get(name, ...)) for name in names}
-    keys |= {"shares": (dict[str, float], {})}
+    keys |= {"shares": (dict[str, float], {}), "measured": (dict[str, list[float]], {})}
     examples = {name: f'{name} = "…"' if name in text else f"{name} = …" for name in names}
-    examples |= {"shares": 'shares = {"cos(2 + 3)" = …}'}
+    examples |= {"shares": 'shares = {"cos(2 + 3)" = …}', "measured": "measured = {input_speed = [-90.0, 120.0]}"}
     return Form("key of a validation", schema("validation", keys), examples)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
 from strainwave.files.entries import Quantity
-from strainwave.files.gear_set import GearSet, loaded_set
+from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.files.units import convert
 from strainwave.messages import shortened
@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 
 class RatingWarning(UserWarning):
-    """A simulation exceeded what the ratings of its gear set, or of the file its gear was loaded from, allow.
+    """A simulation exceeded what the ratings of its gear set allow.
 
     >>> import warnings
     >>> import strainwave as sw
@@ -122,13 +122,10 @@ def drive_of(model: object) -> Drive:
 
 
 def warn_of_ratings(model: Drive | GearSet, run: Recording) -> None:
-    """Warns the caller of a simulation of a gear set, or with a gear of one, of every limit that the run exceeded."""
-    gear_set = model if isinstance(model, GearSet) else loaded_set(model.gear)
-    if gear_set is None:
-        return
-    for check in check_ratings(gear_set, run):
+    """Warns the caller of a simulation of a gear set of every limit that the run exceeded; a drive has no limits."""
+    for check in check_ratings(model, run) if isinstance(model, GearSet) else ():
         if check.exceeded:
-            warnings.warn(f"{gear_set.name}: {check}", RatingWarning, stacklevel=3)
+            warnings.warn(f"{model.name}: {check}", RatingWarning, stacklevel=3)
 
 
 def _check(name: str, limit: Quantity, recording: Recording) -> RatingCheck | None:

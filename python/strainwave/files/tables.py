@@ -98,7 +98,7 @@ def open_table(path: str | Path) -> OpenTable:
     """A file by its suffix.
 
     Raises:
-        ValueError: the suffix is not known, or the file cannot be read
+        ValueError: the file does not exist, its suffix is not known, or it cannot be read
     """
     if Path(path).is_dir() and Path(path, "metadata.yaml").is_file():  # a bag of the second version
         return open_bag(path)
@@ -110,7 +110,7 @@ def open_table(path: str | Path) -> OpenTable:
         known = f"{', '.join(others)} or {last}"
         if Path(path).is_dir():
             raise ValueError(one_line(f"{path} is a folder without a file of measurements; they end in {known}"))
-        if not suffix and not Path(path).exists():
+        if not Path(path).exists():
             raise ValueError(one_line(f"{path} does not exist; check its name"))
         what = OTHER_SUFFIXES.get(suffix, f"use {known}")
         raise ValueError(one_line(f"{path}: suffix {quoted(suffix)} is not known; {what}"))

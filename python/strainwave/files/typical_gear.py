@@ -8,17 +8,27 @@ makers' names, as 25 in HFUC-25-100: about the pitch diameter in tenths of an in
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, log, radians, sqrt
+from math import exp, log, pi, radians, sqrt
 from typing import NamedTuple
+
+
+def rounded(value: float, digits: int) -> float:
+    """Return a number with so many significant digits: an assumed figure has few, so that its rule can be recomputed."""
+    return float(f"{value:.{digits}g}")
+
 
 RAD_PER_ARCMIN = radians(1.0 / 60.0)
 UNITS_SPREAD = 0.3  # of individual gears about the catalogue's stiffness (Harmonic Drive AG)
 # Stiffness of the Maxwell elements over k1: they slip at w/4, w/2 and w.
 ELEMENT_SHARES = (2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
 DAMPING_RATIO = 0.02
-STARTING_TORQUE = 5.764e-4  # N.m: times size³ over ratio; geometric mean of CSF-17-100 and CSF-25-50
+# N.m: times size³ over ratio; geometric mean of CSF-17-100, 3.4 N.cm, and CSF-25-50, 15 N.cm
+EXACT_STARTING_TORQUE = sqrt(0.034 * 100.0 / 17.0**3 * 0.15 * 50.0 / 25.0**3)
+STARTING_TORQUE = rounded(EXACT_STARTING_TORQUE, 4)
 STARTING_SPREAD = 0.2  # what the rule misses its own two figures by
-VISCOUS_FRICTION = 3.492e-4  # N.m.s/rad: of size 20 at 20 degC, from the no-load running torque of CPL-20-160
+# N.m.s/rad: of size 20 at 20 degC; running torque of CPL-20-160, less a correction for the ratio and the starting torque
+EXACT_VISCOUS_FRICTION = (0.16 - 0.003 - 0.029) / (3500.0 * pi / 30.0)
+VISCOUS_FRICTION = rounded(EXACT_VISCOUS_FRICTION, 4)
 VISCOUS_SPREAD = 0.5  # assumed: one gear alone was at hand
 # The middle of the catalogue, and the standard deviation of log(size) over its nine sizes.
 ANY_SIZE, ANY_SIZE_SPREAD = (25.0, 0.5)

@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import arguments
+from strainwave import arrays
 from strainwave.messages import quoted, shortened
 
 Values = TypeVar("Values", float, NDArray[np.float64])
@@ -114,7 +114,7 @@ def convert(values: Values, unit: str, to: str) -> Values:
     Traceback (most recent call last):
     ValueError: cannot convert "1" to "rad"
     """
-    if np.isnan(arguments.numbers("values", values)).any():
+    if np.isnan(arrays.numbers("values", values)).any():
         raise ValueError("values must be numbers, and nan is none")
     if any(isinstance(each, str) and (_COUNTED_UNIT.fullmatch(each) or _SHARE_UNIT.fullmatch(each)) for each in (unit, to)):
         return _convert_scaled(values, unit, to)

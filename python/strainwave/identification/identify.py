@@ -47,6 +47,7 @@ from strainwave.identification.results.gear_so_far import (
     with_ratio,
     with_ratio_of_all,
 )
+from strainwave.identification.results.measured_range import measured_range
 from strainwave.identification.results.parameter_state import ParameterState, over_start_figure, states_of
 from strainwave.messages import listed, one_line, shortened
 from strainwave.presentation import Pictured, Reported, Row, counted
@@ -460,12 +461,13 @@ def with_error_at_constant_speed(gear_set: GearSet, files: Sequence[FileResult])
     log = next((each for each in logs if each.kind == "log"), None)
     if log is None or gear_set.load is None or any(each.kind == "log" for each in gear_set.validation):
         return gear_set
+    ratio = gear_set.gear.kinematics.ratio
     try:
-        prediction = kind_named(log.kind).predict(log.at_ratio(gear_set.gear.kinematics.ratio), gear_set)
+        prediction = kind_named(log.kind).predict(log.at_ratio(ratio), gear_set)
     except (ValueError, FloatingPointError):  # no torque along its motion can be compared
         return gear_set
     own = Validation(
         one_line(prediction.name), prediction.kind, prediction.channel, prediction.unit, prediction.error, prediction.varies,
-        prediction.error, prediction.varies,
+        prediction.error, prediction.varies, measured=measured_range(FileResult(prediction.name, log), ratio),
     )  # fmt: skip
     return replace(gear_set, validation=(*gear_set.validation, own))

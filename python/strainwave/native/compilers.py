@@ -170,7 +170,7 @@ def _run(command: Sequence[str], seconds: float, folder: str, temporary: Sequenc
     try:
         output, _ = process.communicate(timeout=seconds)
     except BaseException as error:
-        kill_group(process)
+        kill_group(process.pid)
         process.communicate()
         if isinstance(error, subprocess.TimeoutExpired):
             raise CompileError(f"{command[0]} was ended after {seconds:g} s") from None

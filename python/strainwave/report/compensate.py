@@ -182,6 +182,8 @@ def _results(found: Compensated) -> dict[str, Any]:
 def compensate_report(found: Compensated, provenance: Provenance | None = None) -> str:
     """Return the page of a compensation, as one HTML file that needs nothing else."""
     figure, units = found.goal.judged_by, found.goal.units
+    shown = f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}"
+    title = f"{shown} of {found.gear_set.name}: cascade, and with the compensation chosen"
     return render(
         "compensate.html.jinja",
         {
@@ -211,12 +213,8 @@ def compensate_report(found: Compensated, provenance: Provenance | None = None) 
             "margins": list(_margins(found)),
             "remarks": found.remarks,
             "members": found.members,
-            "picture_shows": f"Error of the {'torque' if found.goal.name == 'torque' else 'output'}",
-            "picture": figures.inline(lambda canvas: draw_errors(canvas, found), (FIGURE_WIDTH, 3.0), "errors", _title(found)),
+            "picture_shows": shown,
+            "picture": figures.inline(lambda canvas: draw_errors(canvas, found), (FIGURE_WIDTH, 3.0), "errors", title),
         },
         provenance,
     )
-
-
-def _title(found: Compensated) -> str:
-    return f"Error of the output of {found.gear_set.name}: cascade, and with the compensation chosen"

@@ -117,7 +117,7 @@ def _change(each: OrderChange, unit: str) -> dict[str, str]:
         "change": f"{interval(each.low, each.high, each.sigma)} {unit}",
         "limit": quantity(each.limit, unit),
         "detectable": quantity(each.detectable, unit),
-        "alarm": _chance(each.false_alarm),
+        "alarm": "< 10⁻⁹" if each.false_alarm < 1e-9 else number(each.false_alarm, 2),
         "state": "alarm" if each.alarm else "no alarm",
     }
 
@@ -167,10 +167,6 @@ def _life_lines(found: Diagnosis) -> Iterator[str]:
             f"{number(trend.threshold)}, 95 % interval {number(trend.low, 3)} to {number(trend.high, 3)} h; it assumes that "
             "the indicator grows on a straight line"
         )
-
-
-def _chance(probability: float) -> str:
-    return "< 10⁻⁹" if probability < 1e-9 else number(probability, 2)
 
 
 # ---- On a terminal ---------------------------------------------------------------------------------------------------

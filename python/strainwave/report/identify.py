@@ -12,7 +12,7 @@ import numpy as np
 from strainwave.files.entries import NOT_GIVEN
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import AGREEMENT
-from strainwave.identification.checks.unexplained import has_small_shape
+from strainwave.identification.checks.unexplained import has_shape
 from strainwave.identification.identify import Identified
 from strainwave.identification.kinds import kind_named
 from strainwave.identification.reading.mapping import CONSTANTS
@@ -113,7 +113,7 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.insert(0, f"{failed} of {_several(checks, 'check')} failed, and {written}")
     else:
         parts.append({0: "no check applied", 1: "the one check passed"}.get(checks, f"all {checks} checks passed"))
-    if shapes := [quantity(check.value, check.unit) for check in found.checks if has_small_shape(check)]:
+    if shapes := [quantity(check.value, check.unit) for check in found.checks if has_shape(check)]:
         parts.append(f"the residual has a shape of RMS {listed(shapes)}")
     if found.unchecked:
         parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")

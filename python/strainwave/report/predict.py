@@ -34,6 +34,12 @@ def verdict_sentence(found: Prediction) -> str:
     if found.contradicts:
         result = f"{found.name} contradicts {found.gear}: {error}, where {allowed} is allowed"
         return f"{result}; {_changes(found) if found.changed else _not_explained(found)}."
+    if found.same_as:
+        name = "" if found.same_as == found.name else f" as {found.same_as}"
+        return (
+            f"{found.name} is no evidence: {found.gear} was identified from this recording{name}; {error}; compare one made "
+            "later."
+        )
     error = f"{error}, of {allowed} allowed"
     if found.changed:
         return f"{found.name} differs from {found.gear}, within the allowed error: {_changes(found)}; {error}."
@@ -159,7 +165,7 @@ def predict_files(found: Sequence[Prediction], gear_set: GearSet, provenance: Pr
 def _json(found: Prediction) -> dict[str, Any]:
     names = (
         "name", "gear", "kind", "channel", "unit", "error", "varies", "relative", "plain", "allowed", "samples",
-        "error_with_changes", "verdict", "refused", "remarks",
+        "error_with_changes", "verdict", "refused", "same_as", "remarks",
     )  # fmt: skip
     return {
         **{name: getattr(found, name) for name in names},

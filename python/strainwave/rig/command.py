@@ -14,6 +14,7 @@ import typer
 
 from strainwave.commands.help import Verbs
 from strainwave.commands.options import folder, numeric, whole, with_groups
+from strainwave.commands.output import write_report
 from strainwave.files.folder import inside
 from strainwave.files.gear_set import GearSet
 from strainwave.files.writing import claiming, making, write_folder, written
@@ -241,8 +242,7 @@ def analyse(
     )
     found, read = evaluate_paths(paths, given)
     files = files_of(found, _provenance(read))
-    write_folder(target, files)
-    print(f"{summary(found)}\n\nwrote {target / 'report.html'}, and beside it {', '.join(list(files)[:-1])}")
+    write_report(target, files, summary(found))
     there = sorted(each.name for kind in ("csv", "parquet") for each in target.glob(f"loop-*.{kind}"))
     if left := [each for each in there if each not in files]:
         print(f"of an earlier analysis, and no part of this one: {', '.join(left)}")

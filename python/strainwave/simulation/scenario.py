@@ -495,7 +495,7 @@ def table(time: ArrayLike, value: ArrayLike) -> Scenario:
 
 def _command(name: str, value: object) -> tuple[float, str]:
     """Return a number of a command in SI units, and the unit of its text; "" if it is no text."""
-    from strainwave.files.entries import written_figure
+    from strainwave.files.figures import written_figure
 
     if not isinstance(value, str):
         return arguments.number(name, value), ""

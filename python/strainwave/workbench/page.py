@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from strainwave import Drive, control, loads, motor
-from strainwave.files.entries import IDENTIFIED_SOURCE, NOT_GIVEN
+from strainwave.files.entries import NOT_GIVEN, Entry
 from strainwave.files.gear_set import GearSet, catalogue
 from strainwave.workbench.schema import values_of
 
@@ -50,33 +50,34 @@ def embedded(data: Any) -> str:
 
 
 def start_of(gear_set: GearSet) -> dict[str, Any]:
-    """Return what the page begins with: the gear in a drive, what it is loaded with, and the sources of its numbers."""
+    """Return what the page contains of a gear.
+
+    A drive around it with the entries of its numbers, each source, spread and standard deviation; the travel of its loop, its
+    ratings and its covariance.
+    """
     parts = own_parts(gear_set)
     own = {path: entry for path, entry in gear_set.sources.items() if path.partition(".")[0] in {"gear", *parts}}
-    sources = {path: entry.source for path, entry in own.items()}
-    is_identified = {path for path, source in sources.items() if source.startswith(IDENTIFIED_SOURCE)}
-    sigmas = {path: own[path].uncertainty for path in is_identified if own[path].uncertainty is not None}
-    return _entry(gear_set) | {"parts": list(parts), "sources": sources, "sigmas": sigmas}
+    covariance = None if gear_set.covariance is None else gear_set.covariance.among(own)
+    return {
+        "name": gear_set.name,
+        "maker": gear_set.maker,
+        "note": gear_set.note,
+        "drive": changed(drive_around(gear_set)),
+        "travel": {"by": "torque", "torque": first_torque(gear_set)},
+        "parts": list(parts),
+        "sources": {path: _stated(entry) for path, entry in own.items() if entry.source != NOT_GIVEN},
+        "ratings": {name: [rating.value, rating.unit, *_stated(rating)] for name, rating in gear_set.ratings.items()},
+        "covariance": None if covariance is None else {"numbers": covariance.paths, "matrix": covariance.matrix},
+    }
+
+
+def _stated(entry: Entry) -> list[Any]:
+    return [entry.source, entry.spread, entry.uncertainty]
 
 
 def entries() -> dict[str, Any]:
-    """Return the gears of the catalogue, by their names, each number with a short source."""
-    gears = {name: GearSet.read(name) for name in catalogue()}
-    return {name: _entry(each) | {"sources": _short_sources(each, f"catalogue {each.name}")} for name, each in gears.items()}
-
-
-def _short_sources(gear_set: GearSet, source: str) -> dict[str, str]:
-    given = {path: entry for path, entry in gear_set.sources.items() if entry.source != NOT_GIVEN}
-    return {path: f"assumed: {source}" if entry.assumed else source for path, entry in given.items()}
-
-
-def _entry(gear_set: GearSet) -> dict[str, Any]:
-    return {
-        "name": gear_set.name,
-        "drive": changed(drive_around(gear_set)),
-        "travel": {"by": "torque", "torque": first_torque(gear_set)},
-        "rated": rated_torque(gear_set),
-    }
+    """Return the gears of the catalogue, by their names."""
+    return {name: start_of(GearSet.read(name)) for name in catalogue()}
 
 
 def rated_torque(gear_set: GearSet) -> float | None:

@@ -7,7 +7,8 @@ from inspect import cleandoc
 from typing import Any
 
 from strainwave import Drive, control, motor
-from strainwave.files.units import convert
+from strainwave.files.gear_file import optional_tables
+from strainwave.files.units import base_exponents, convert
 from strainwave.simulation.signals import command_unit
 
 UNITS = {  # of the menus of the page, SI first
@@ -15,6 +16,33 @@ UNITS = {  # of the menus of the page, SI first
     "speed": ("rad/s", "deg/s", "rpm"),
     "torque": ("N.m", "mN.m", "kgf.m", "kgf.cm"),
 }
+
+
+SYMBOLS = (  # of units that the page reads in gear files; the package reads more
+    *("s", "ms", "us", "min", "h", "Hz", "m", "mm", "um", "cm", "kg", "g", "A", "mA", "K", "rad", "mrad", "deg", "arcmin"),
+    *(
+        "arcsec",
+        "rev",
+        "rpm",
+        "N",
+        "mN",
+        "kN",
+        "kgf",
+        "J",
+        "mJ",
+        "W",
+        "kW",
+        "V",
+        "mV",
+        "Ohm",
+        "mOhm",
+        "H",
+        "mH",
+        "uH",
+        "Wb",
+        "mWb",
+    ),
+)
 
 
 def values_of(model: Any) -> dict[str, Any]:
@@ -49,7 +77,7 @@ def model_of(kind: type[Any], values: Mapping[str, Any]) -> Any:
 
 
 def schema() -> dict[str, Any]:
-    """Return all models that a drive may contain, by their names in Python, and the units of the page's menus.
+    """Return all models that a drive may contain, by their names in Python, symbols of units, and the page's menus of units.
 
     The fields of a model are in the order in which the compiled core takes a set of parameters apart.
 
@@ -60,6 +88,7 @@ def schema() -> dict[str, Any]:
     _describe(Drive, models)
     return {
         "models": models,
+        "symbols": {symbol: base_exponents(symbol) for symbol in SYMBOLS},
         "units": {of: {name: convert(1.0, name, names[0]) for name in names} for of, names in UNITS.items()},
     }
 
@@ -82,10 +111,15 @@ def _describe(kind: type[Any], models: dict[str, Any]) -> str:
             "name": getattr(kind, "name", ""),
             "doc": text,
             "source": getattr(kind, "source", ""),
-            "fields": [_field(field, models) for field in kind.fields],
+            "fields": [_field(field, models) | _optional_part(kind, field["name"]) for field in kind.fields],
             "command": _command_unit(kind),
         }
     return name
+
+
+def _optional_part(kind: type[Any], name: str) -> dict[str, bool]:
+    """Return a mark of a part whose table a gear file may leave out; nothing for any other member."""
+    return {"absent": True} if name in optional_tables(kind) else {}
 
 
 def _command_unit(kind: type[Any]) -> str:

@@ -233,7 +233,7 @@ def test_an_angle_that_is_lost_among_turns_is_no_place_to_rest() -> None:
 
 
 @pytest.mark.whole_path("analysis")
-@settings(max_examples=sample(8, 20))
+@settings(max_examples=sample(3, 20))
 @given(smooth_drives)
 def test_any_drive_rests_where_it_is_said_to(drive: sw.Drive) -> None:
     """What has no equilibrium says so; in all others no side accelerates, nor does the current or the controller."""

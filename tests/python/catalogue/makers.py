@@ -1,24 +1,23 @@
-"""The catalogue's sets as plain TOML, and what the maker publishes of these gears, typed from his documents.
+"""The content of the catalogue's sets, and what the maker publishes of these gears, typed from his documents.
 
-The package's loader has its own tests.
+How a set is made of its content has its own tests.
 """
 
 from __future__ import annotations
 
 import os
-import tomllib
 from math import pi, radians
 from pathlib import Path
 from typing import Any
 
 import pytest
+from strainwave.files import harmonic_drive
 
 from tests.support.each import each
 
 ROOT = Path(__file__).resolve().parents[3]
 TRANSCRIPTIONS = Path(os.environ.get("STRAINWAVE_DATA", ROOT.parent / "shared" / "data")) / "catalogue"
-FILES = sorted((ROOT / "python" / "strainwave" / "catalogue").glob("*.toml"))
-SETS: dict[str, dict[str, Any]] = {file.stem: tomllib.loads(file.read_text(encoding="utf-8")) for file in FILES}
+SETS: dict[str, dict[str, Any]] = {name: harmonic_drive.document(name) for name in sorted(harmonic_drive.gears())}
 ARCMIN = radians(1.0 / 60.0)
 EXACT = 1e-15  # decimal prefixes
 ROUNDING = 5e-4  # assumed figures carry four significant digits

@@ -88,8 +88,8 @@ CHOICES = {
     "hysteresis": {"model": "maxwell_slip"}, "kinematic_error": {"model": "fourier"},
     "friction_input": {"model": "coulomb"}, "friction_output": {"model": "viscous"}, "gear": {}, "ratings": {},
 }  # fmt: skip
-UNITS: dict[str, dict[str, str | None]] = {
-    "kinematics": {"flexspline_teeth": None, "circular_spline_teeth": None},
+UNITS: dict[str, dict[str, str]] = {
+    "kinematics": {"flexspline_teeth": "1", "circular_spline_teeth": "1"},
     "stiffness": {"k1": "N.m/rad", "k2": "N.m/rad", "k3": "N.m/rad", "t1": "N.m", "t2": "N.m"},
     "hysteresis": {"stiffness": "N.m/rad", "breakaway": "N.m"},
     "kinematic_error": {"order": "1", "amplitude": "rad", "phase": "rad"},
@@ -117,7 +117,7 @@ def test_a_set_has_exactly_the_tables_and_keys_of_a_gear(name: str) -> None:
 
 
 @every_set
-def test_a_set_is_named_after_its_file_and_notes_missing_ratings(name: str) -> None:
+def test_a_set_has_its_name_and_notes_missing_ratings(name: str) -> None:
     note = SETS[name].get("note", "None.")
     assert (name in RATED) != ("Without published ratings" in note)
     assert (SETS[name]["name"], SETS[name]["maker"]) == (name.upper(), "Harmonic Drive")
@@ -128,8 +128,7 @@ def test_a_set_is_named_after_its_file_and_notes_missing_ratings(name: str) -> N
 @every_set
 def test_every_number_has_its_unit_and_a_source_and_only_the_spring_a_spread(name: str) -> None:
     for table, key, entry in numbers(name):
-        unit = UNITS[table][key]
-        expected = {"unit": unit} if unit else {}
+        expected = {"unit": UNITS[table][key]}
         spread = {"spread": 0.3} if key in {"k1", "k2", "k3", "t1", "t2"} else {}
         assert {k: entry[k] for k in entry.keys() - {"value", "source"}} == expected | spread, (table, key)
         assert len(entry["source"]) > 20

@@ -13,10 +13,15 @@ import strainwave as sw
 import yaml
 from strainwave.export import FIRMWARE, FORMS
 from strainwave.export.exported import ORIGINS_FILE, Exported
+from strainwave.files.identified_tables import Validation
 
 JOINT = sw.GearSet.read("robot-joint")
 DAMPING = "gear.damping"
-IDENTIFIED = JOINT.replace(sources={**JOINT.sources, DAMPING: sw.files.Entry("identified from run--a.csv", uncertainty=1e-6)})
+MEASURED = Validation("run-a.csv", "log", "current", "A", 0.1, 1.0, 0.1, 1.0, measured={"input_speed": (-90.0, 120.0)})
+IDENTIFIED = JOINT.replace(
+    sources={**JOINT.sources, DAMPING: sw.files.Entry("identified from run--a.csv", uncertainty=1e-6)}, validation=(MEASURED,)
+)
+RANGE = "run-a.csv: input speed -90 to 120 rad/s; output torque, output angle, temperature not known"
 LINE = f"{DAMPING} = {JOINT.gear.damping:.6g} ± 1e-06 N.m.s/rad, identified from run"
 
 
@@ -39,6 +44,7 @@ def test_files_state_what_was_identified_and_are_read_as_without(found: Exported
         assert isinstance(text, str)
         assert LINE in text
         assert "gear.input_inertia = " in text
+        assert RANGE in text
         if name.endswith((".xml", ".urdf", ".xacro")):
             ElementTree.fromstring(text)
         elif name == "drive.hpp":
@@ -47,12 +53,14 @@ def test_files_state_what_was_identified_and_are_read_as_without(found: Exported
             assert isinstance(yaml.safe_load(text), dict)
         elif name.endswith(".py"):
             compile(text, name, "exec")
+    assert found.remarks[-1] == f"valid where the gear was measured, by {RANGE}"
 
 
 def test_an_fmu_states_in_its_documentation_what_was_identified() -> None:
     with ZipFile(BytesIO(cast(bytes, sw.export.fmu(IDENTIFIED, platforms=(), name="block").files["block.fmu"]))) as block:
         page = block.read("documentation/index.html").decode()
     assert LINE in page
+    assert RANGE in page
     assert "gear.input_inertia = " in page
 
 
@@ -66,18 +74,20 @@ def test_every_export_states_that_a_log_counts_its_current_the_other_way() -> No
 
 
 @pytest.mark.slow("export")
+@pytest.mark.usefixtures("kept_builds")
 def test_compiled_exports_state_what_was_identified() -> None:
     plugin = sw.export.mujoco_plugin(IDENTIFIED).files
     package = sw.export.modelica(IDENTIFIED, name="Joint").files
     for text in (plugin["gear.xml"], package["Joint/package.mo"], package["Joint/Resources/Include/joint.h"]):
         assert LINE in str(text)
+        assert RANGE in str(text)
 
 
 def test_firmware_and_gear_files_state_what_was_identified(tmp_path: Path) -> None:
     written = sw.export.firmware(IDENTIFIED, tmp_path, part="gear.friction_input")
     IDENTIFIED.save(tmp_path / "gear.toml")
     for path, comment in ((written.header, "//   "), (written.source, "//   "), (tmp_path / "gear.toml", "#   ")):
-        assert f"{comment}{LINE}--a.csv" in path.read_text().splitlines()
+        assert {f"{comment}{LINE}--a.csv", f"{comment}{RANGE}"} <= set(path.read_text().splitlines())
     assert sw.GearSet.read(tmp_path / "gear.toml") == IDENTIFIED
 
 
@@ -85,3 +95,4 @@ def test_every_export_states_origins_but_not_those_of_a_set_of_which_nothing_was
     assert [form for form in FORMS if not hasattr(form.write, "__wrapped__")] == [FIRMWARE]
     assert JOINT.origins == []
     assert "<!--" not in str(sw.export.mjcf(JOINT).files["gear.xml"])
+    assert not any("valid where" in each for each in sw.export.joint(JOINT).remarks)

@@ -74,6 +74,17 @@ def test_the_whole_drive_of_the_page_is_read_and_runs(folder: Path) -> None:
     assert GearSet.read("copy.toml") == gear_set
 
 
+def test_the_file_of_the_page_on_a_set_of_the_catalogue_has_its_tables(folder: Path) -> None:
+    write_examples()
+    arm, gear = GearSet.read("arm.toml"), GearSet.read("csg-25-100")
+    assert (arm.name, arm.maker, arm.note) == ("Arm on the bench", "", "")
+    assert (arm.gear, arm.ratings, arm.drive.load.inertia) == (gear.gear, gear.ratings, 0.5)
+    assert gear.sources.items() <= arm.sources.items()
+    arm.save("copy.toml")
+    assert "base" not in Path("copy.toml").read_text(encoding="utf-8")
+    assert GearSet.read("copy.toml") == arm
+
+
 def test_the_code_of_the_page_runs(folder: Path) -> None:
     write_examples()
     names: dict[str, Any] = {}

@@ -47,6 +47,10 @@ REFUSED = {
     with_line("name", ""): 'my.toml name is missing; write name = "…"',
     with_line("name", "name = ''"): "my.toml name = '' must be one line of text",
     with_line("name", "name = 'a'\nmaker = 3"): 'my.toml maker = 3 must be a text; write maker = "…"',
+    with_line("name", "name = 'a'\nbase = 'mine.toml'"): (
+        'my.toml base = "mine.toml" is no set of the catalogue, which `strainwave list` lists'
+    ),
+    with_line("name", "name = 'a'\nbase = 3"): "my.toml base must be a text, not 3",
     with_line("name", "name = 'a'\ncolour = 3"): f"my.toml colour: not a part of a gear file; it has {PARTS}",
     with_line("[stiffness]", "[stifness]"): f"my.toml stifness: not a part of a gear file; it has {PARTS}",
     with_line("name", "name = 'a'\nload = 3"): (

@@ -13,7 +13,7 @@ import pytest
 import strainwave as sw
 from hypothesis import given, strategies as st
 from strainwave.files.entries import Quantity
-from strainwave.files.gear_set import GearSet, loaded_set
+from strainwave.files.gear_set import GearSet
 
 LIMITS = {
     "rated_torque": 10.0,
@@ -185,22 +185,13 @@ peak_torque = "74 N.m"
 
 def test_a_run_with_the_gear_of_a_data_sheet_warns_of_the_limits_of_the_sheet(tmp_path: Path) -> None:
     (tmp_path / "sheet.toml").write_text(SHEET)
-    gear = sw.load(tmp_path / "sheet.toml")
-    drive = sw.Drive(gear=gear, load=sw.loads.Inertia(inertia=1.0))
+    sheet = sw.GearSet.read(tmp_path / "sheet.toml")
+    joint = sheet.with_parts(motor=sw.motor.BrushlessDC(), load=sw.loads.Inertia(inertia=1.0), source="x")
     held = sw.scenario.constant(0.0, 0.1)
     with pytest.warns(sw.files.RatingWarning, match=r"^sheet: peak torque: .* exceeds the limit of 74 N\.m"):
-        sw.simulate(drive, held, load_torque=165.0)
-    sw.simulate(drive, held, load_torque=1.0)  # a warning would be an error
-    sw.simulate(drive.replace(gear=gear.replace(damping=1.01 * gear.damping)), held, load_torque=165.0)  # another gear
-
-
-def test_the_sets_of_so_many_loaded_gears_are_kept_and_no_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("strainwave.files.gear_set.MAX_LOADED_SETS", 2)
-    gears = []
-    for ratio in (50, 80, 100):
-        (tmp_path / f"{ratio}.toml").write_text(SHEET.replace("-100", f"-{ratio}"))
-        gears.append(sw.load(tmp_path / f"{ratio}.toml"))
-    assert [loaded_set(gear) is not None for gear in gears] == [False, True, True]
+        sw.simulate(joint, held, load_torque=165.0)
+    sw.simulate(joint, held, load_torque=1.0)  # a warning would be an error
+    sw.simulate(joint.drive, held, load_torque=165.0)  # a drive has no ratings
 
 
 def test_a_run_within_all_limits_warns_of_none() -> None:

@@ -15,14 +15,51 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings, strategies as st
-from strainwave.files.labels import ColumnSource
+from strainwave.files.budget import read_text
+from strainwave.files.labels import ColumnSource, labels_of, read_by_others
 from strainwave.files.recording import Recording
 from strainwave.files.tables import FORMATS, LISTED_FORMATS, open_table
+from strainwave.files.text_table import CsvTable
 
 from tests.python.files.test_recording import EMPTY, RUN, exactly, untimed
 from tests.support.work import calls
 
 # Text
+
+
+def open_simple(path: Path) -> CsvTable:
+    """The reader of a text format, as docs/contributing/add-a-file-format.md describes it."""
+    with read_by_others(path, "swlo"):
+        header, end, rows = read_text(path, 2**20).partition("\n")
+    delimiter = ";"
+    return CsvTable(str(path), "", delimiter, labels_of(header.split(delimiter)), memoryview((end + rows).encode()), line=1)
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_a_reader_of_text_takes_any_end_of_a_line(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "a.swlo"
+    path.write_bytes(end.join(["time [s];torque [N.m]", "0;1,5", "1;-0,5", ""]).encode())
+    table = open_simple(path)
+    assert [label.name for label in table.labels] == ["time", "torque"]
+    assert table.contents == ["numbers", "numbers"]
+    columns = [ColumnSource(0, "time", "time", "s"), ColumnSource(1, "torque", "torque", "N.m")]
+    assert table.numbers(columns)["torque"].tolist() == [1.5, -0.5]
+    path.write_bytes(path.read_bytes().replace(b"-0,5", b"none"))
+    with pytest.raises(ValueError, match=exactly(f'{path} line 3, column "torque": "none" is not a number')):
+        open_simple(path).numbers(columns)
+
+
+def test_a_reader_of_text_states_why_it_does_not_read_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.swlo"
+    path.write_bytes(b"time\xff\n")
+    with pytest.raises(ValueError, match=exactly(f"{path}: is not a text in UTF-8")):
+        open_simple(path)
+    path.write_bytes(bytes(2**20 + 1))
+    with pytest.raises(ValueError, match=f"^{re.escape(str(path))}: has more than 1 MB"):
+        open_simple(path)
+    with pytest.raises(ValueError, match=exactly(f"{path}.txt cannot be read: No such file or directory")):
+        open_simple(Path(f"{path}.txt"))
+
 
 UNCLOSED = "a quoted cell must end with its quote, on the same line"
 
@@ -384,6 +421,12 @@ def test_names_and_units_of_spreadsheets_are_read_in_their_encoding(tmp_path: Pa
     assert table["Moment"].tolist() == [2.0]
 
 
+def test_a_file_of_an_unknown_suffix_that_is_not_there_does_not_exist(tmp_path: Path) -> None:
+    path = tmp_path / "run.doc"
+    with pytest.raises(ValueError, match=exactly(f"{path} does not exist; check its name")):
+        Recording.read(path)
+
+
 @pytest.mark.parametrize("name", ["run.csv", "run.parquet"])
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
@@ -396,6 +439,7 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path, name: str) -> None:
 
 def test_an_unknown_suffix_is_refused_with_those_of_all_formats(tmp_path: Path) -> None:
     path = tmp_path / "run.doc"
+    path.touch()
     *others, last = [suffix for each in LISTED_FORMATS for suffix in each.suffixes]
     assert {".csv", ".parquet", ".dat", ".mat"} < {*others, last}
     for read in (Recording.read, Recording.header):
@@ -409,6 +453,8 @@ def test_no_suffix_belongs_to_two_formats() -> None:
 
 
 def test_other_files_that_people_have_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    for name in ("log.pkl", "log.xlsx"):
+        (tmp_path / name).touch()
     with pytest.raises(ValueError, match=r"a pickle may run any program as it is read: save it as \.npz"):
         Recording.read(tmp_path / "log.pkl")
     with pytest.raises(ValueError, match=r"save the sheet as \.csv$"):

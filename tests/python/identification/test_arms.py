@@ -11,7 +11,7 @@ from strainwave.identification.reading.mapping import FileMapping
 
 from tests.evidence import arms
 
-FAST = {"rtde.csv": 20.0, "hand.mat": 20.0, "headerless_all.csv": 40.0}  # `python -m tests.evidence.arms` tries all
+FAST = {"rtde.csv": 10.0, "hand.mat": 20.0, "headerless_all.csv": 25.0}  # s; `python -m tests.evidence.arms` tries all
 
 
 @pytest.mark.slow("identification")

@@ -10,6 +10,7 @@ import pytest
 
 from tests.evidence import assumptions
 from tests.evidence.rig import RIG
+from tests.support.thinned import thin
 
 pytestmark = pytest.mark.skipif(
     not (RIG / "measure.py").is_file() or shutil.which("cc") is None,
@@ -26,7 +27,8 @@ def is_fast(case: assumptions.Case) -> bool:
 @pytest.fixture(scope="module")
 def seed(tmp_path_factory: pytest.TempPathFactory) -> Seed:
     folder = tmp_path_factory.mktemp("joint")
-    return folder, assumptions.made(folder, 3)
+    truth = assumptions.made(folder, 3)
+    return thin(folder, every=3), truth
 
 
 @pytest.mark.slow("identification")

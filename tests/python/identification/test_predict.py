@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -21,6 +22,7 @@ from tests.evidence.arms import Joint, Recorder, fourier, rtde, run
 from tests.evidence.rig import RIG, measured
 from tests.python.command import refused, strainwave
 from tests.support.samples import sample
+from tests.support.thinned import thin
 
 JOINT = Joint()
 STATED = sw.FileMapping(joint="1", constants={"torque_constant": 0.12, "motor_inertia": 4e-5, "ratio": 100.0})
@@ -29,7 +31,7 @@ SPEED = np.geomspace(2.0, 200.0, 12)
 
 
 def record(path: Path, joint: Joint, seed: int, turned: float = 1.0, way: float = 1.0) -> None:
-    seen = Recorder(rate=250.0, seed=seed)(run((joint,) * 3, fourier(30.0, (1,), seed)))
+    seen = Recorder(rate=125.0, seed=seed)(run((joint,) * 3, fourier(30.0, (1,), seed)))
     rtde(path, seen | {"current": turned * seen["current"], "q": way * seen["q"], "dq": way * seen["dq"]})
 
 
@@ -107,7 +109,7 @@ def test_another_torque_constant_is_told_from_another_joint(folder: Path) -> Non
 
 @pytest.mark.slow("identification")
 def test_temperature_is_a_cause_if_it_was_recorded(folder: Path) -> None:
-    seen = Recorder(rate=250.0, seed=5)(run((JOINT,) * 3, fourier(30.0, (1,), 12)))
+    seen = Recorder(rate=125.0, seed=5)(run((JOINT,) * 3, fourier(30.0, (1,), 12)))
     speed = np.gradient(seen["q"][1], seen["time"])
     kelvin = np.linspace(0.0, 20.0, len(speed))
     lost = -0.01 * kelvin * (JOINT.coulomb / 0.12) * np.tanh(speed / 0.02)
@@ -133,6 +135,22 @@ def test_a_table_of_friction_is_predicted_by_the_gear_alone() -> None:
     (found,) = sw.predict(gear, {"friction": table})
     assert change(found, "dry friction").value == pytest.approx(1.3, abs=0.01)
     assert [each.name for each in found.changed] == ["dry friction"]
+
+
+def test_the_recording_that_the_gear_came_from_is_no_evidence(tmp_path: Path) -> None:
+    for name, seed in (("first", 0), ("later", 1)):
+        torque = 0.05 + 3e-4 * SPEED + 1e-4 * np.random.default_rng(seed).standard_normal(len(SPEED))
+        sw.Recording({"speed": SPEED, "torque": torque}, {"speed": "rad/s", "torque": "N.m"}).to_csv(tmp_path / f"{name}.csv")
+    sw.identify("csg-20-100", [tmp_path / "first.csv"]).gear_set.save(tmp_path / "gear.toml")
+    shutil.copy(tmp_path / "first.csv", tmp_path / "copy.csv")
+    names = [tmp_path / f"{name}.csv" for name in ("copy", "later")]
+    copy, later = sw.predict(tmp_path / "gear.toml", names)
+    assert (copy.verdict, copy.same_as) == ("no evidence", "first.csv")
+    assert verdict_sentence(copy).startswith("copy.csv is no evidence: ")
+    assert "was identified from this recording as first.csv; " in verdict_sentence(copy)
+    assert (later.verdict, later.same_as) == ("agrees", "")
+    (unknown,) = sw.predict(sw.GearSet.read(tmp_path / "gear.toml").gear, names[:1])  # a gear that names no files
+    assert (unknown.verdict, unknown.same_as) == ("agrees", "")
 
 
 def test_the_uncertainty_of_the_saved_numbers_is_part_of_that_of_a_change() -> None:
@@ -186,8 +204,9 @@ def test_what_cannot_be_predicted_states_why(folder: Path) -> None:
 @pytest.mark.parametrize("seed", range(3, 3 + sample(1, 2)))
 def test_an_independent_joint_and_its_loads(tmp_path: Path, seed: int) -> None:
     """Friction scaled by 1.3 in another record, and the loads of two other logs: 0.85 to 0.3 kg.m2, 11 to 25 N.m."""
-    first, more = measured(seed), (f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806")
+    first, more = shutil.copytree(measured(seed), tmp_path / "first"), (f"seed={seed + 20}", "Fc=0.0611", "Fs=0.0806")
     subprocess.run([sys.executable, RIG / "measure.py", tmp_path / "worn", *more], check=True)
+    thin(tmp_path, every=2)
     stated = sw.FileMapping(constants={"torque_constant": 0.0755, "motor_inertia": 7.5e-5})
     saved = sw.identify("hfuc-20-80", [first / "log.csv"], mapping=stated).gear_set
     loads = [first / "two_loads" / f"{name}.csv" for name in ("heavy", "light", "middle")]
@@ -237,7 +256,7 @@ def test_a_table_is_judged_by_the_error_on_tables_not_by_that_on_torsion_loops()
 
 
 @pytest.mark.slow("identification")
-@pytest.mark.parametrize("samples", [-2.0, 1.0, 4.5])
+@pytest.mark.parametrize("samples", [-2.0, 4.5])
 def test_a_delay_of_the_current_is_a_change_of_its_own_and_none_of_friction(folder: Path, samples: float) -> None:
     record_shifted(folder / "late.csv", delay=samples / 250.0)
     found = predicted(folder, "late.csv")
@@ -248,7 +267,7 @@ def test_a_delay_of_the_current_is_a_change_of_its_own_and_none_of_friction(fold
 
 
 @pytest.mark.slow("identification")
-@pytest.mark.parametrize("angle", [-0.1, 0.5, 2.5])
+@pytest.mark.parametrize("angle", [-0.1, 2.5])
 def test_an_angle_counted_from_another_zero_is_no_change_of_zero_or_gravity(folder: Path, angle: float) -> None:
     record_shifted(folder / "turned.csv", angle=angle)
     found = predicted(folder, "turned.csv")
@@ -281,7 +300,7 @@ def test_a_sure_but_small_change_states_the_limit_that_it_is_below(folder: Path)
 @pytest.mark.slow("identification")
 def test_changes_that_leave_the_error_explain_nothing(folder: Path) -> None:
     """The currents of another motion: scales fit a little of them, and one below zero is no torque constant."""
-    motions = [Recorder(rate=250.0, seed=seed)(run((JOINT,) * 3, fourier(30.0, (1,), seed))) for seed in (12, 31)]
+    motions = [Recorder(rate=125.0, seed=seed)(run((JOINT,) * 3, fourier(30.0, (1,), seed))) for seed in (12, 31)]
     rtde(folder / "other.csv", motions[0] | {"current": motions[1]["current"]})
     found = predicted(folder, "other.csv")
     assert found.contradicts

@@ -71,8 +71,8 @@ def test_every_text_of_a_figure_is_inside_it_and_on_no_other(each: Identified) -
 
 
 @pytest.mark.whole_path("report")
-def test_every_curve_has_its_name_in_the_legend(each: Identified) -> None:
-    for svg in section(identify_report(each), "measured").find("svg"):
+def test_every_curve_has_its_name_in_the_legend(html: str) -> None:
+    for svg in section(html, "measured").find("svg"):
         assert {"measured", "model"} <= {text.text for text in svg.find("text")}
 
 

@@ -235,6 +235,8 @@ SUM = LASTING + 'command = 1.0\n[[temperature]]\nkind = "constant"\nvalue = { va
         (LASTING + 'command = 1.0\nname = "two\\nlines"', "name = 'two\\nlines' must be one line of text"),
         (SUM + 'kind = "step"\namplitude = { value = 20, unit = "degC" }',
          "temperature[1].amplitude: what is added is a difference; degC has a zero of its own, so write K"),
+        (LASTING + 'command = 1.0\n[temperature]\nkind = "step"\namplitude = { value = 20, unit = "degC" }',
+         "temperature.amplitude: what is added is a difference; degC has a zero of its own, so write K"),
         (SUM + 'kind = "constant"\nvalue = { value = 20, unit = "degC" }', "temperature[1].value: what is added is a"),
         (LASTING + '"\\u001b[31mred" = 1', '"\\x1b[31mred" is not known'),
     ],

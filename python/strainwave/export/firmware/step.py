@@ -153,7 +153,7 @@ def _drive(drive: Drive, part: str, period: float | None) -> StepFunction:
             Member("temperature", "K", "around the drive", (ROOM_TEMPERATURE,)),
             Member("temperature_rate", "K/s", "its rate"),
         ),
-        tuple(Member(each.name, each.unit, _one_line(each.doc)) for each in shown),
+        tuple(Member(each.name, each.unit, " ".join(each.doc.split())) for each in shown),
         f"""
     const auto after = [&](S time) -> strainwave::Input<S> {{
         return {{in.command + time * in.command_rate, in.command_rate,
@@ -341,7 +341,3 @@ def _state(drive: Drive, part: str | None, prefix: str) -> Iterator[Member]:
             member, bracket, _ = path.removeprefix(prefix).replace(".", "_").partition("[")
             members.setdefault(member, (unit, bool(bracket), []))[2].append(float(value))
     return (Member(name, unit, "", tuple(start), is_array) for name, (unit, is_array, start) in members.items())
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())

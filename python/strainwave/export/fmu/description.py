@@ -75,7 +75,7 @@ def model_description(about: Description, version: int) -> bytes:
     else:
         time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous", "unit": "s"}
         ElementTree.SubElement(listed, "Float64", time)
-        listed.extend(_variable_3(each) for each in about.variables)
+        listed.extend(Element("Float64", _common(each) | _real(each)) for each in about.variables)
         listed.extend(_state_3(about, i) for i in range(2 * about.state_count + about.has_events))
     root.append(_structure_2(about) if version == 2 else _structure_3(about))
     return _xml(root)
@@ -177,10 +177,6 @@ def _variable_2(variable: Variable) -> Element:
     found = Element("ScalarVariable", _common(variable))
     ElementTree.SubElement(found, "Real", _real(variable))
     return found
-
-
-def _variable_3(variable: Variable) -> Element:
-    return Element("Float64", _common(variable) | _real(variable))
 
 
 def _state_2(about: Description, i: int) -> Element:

@@ -259,7 +259,7 @@ def _without(best: MotionCandidate, part: Literal["gravity", "inertia", "viscous
     """
     model, motion, ratio = best.model, best.log.motion, best.model.drive.gear.kinematics.ratio
     path, torque = {  # of a unit of the number
-        "gravity": ("load.gravity_torque", np.sin(motion.angle / ratio) / ratio),
+        "gravity": ("load.gravity_torque", np.sin(motion.output_angle(ratio)) / ratio),
         "inertia": ("load.inertia", motion.acceleration / ratio**2),
         "viscous part": (model.path_of("viscous"), motion.speed),
     }[part]

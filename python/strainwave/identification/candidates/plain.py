@@ -124,10 +124,12 @@ def one_speed(log: MotionLog) -> float:
 def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     """Return the standard deviation of gravity at the output with slow drift or curved friction as rivals [N.m].
 
-    A motion over part of a turn does not separate a sine of the angle from what else changes slowly over it.
+    A motion over part of a turn does not separate a sine of the angle from what else changes slowly over it. The load hangs at
+    the angle of the output. If that was not measured, the gear winds up by as much as the spring of the drive predicts, and the
+    whole change of gravity by that is uncertain.
     """
     motion, ratio = log.motion, drive.gear.kinematics.ratio
-    angle, speed, time = motion.angle / ratio, motion.speed, motion.time - float(np.mean(motion.time))
+    angle, speed, time = motion.output_angle(ratio), motion.speed, motion.time - float(np.mean(motion.time))
     sign = np.sign(speed)
     own = [np.sin(angle) / ratio, np.cos(angle) / ratio, motion.acceleration, speed, sign, np.ones_like(speed)]
     rivals = [time, time**2, speed * np.abs(speed), sign * np.sqrt(np.abs(speed)), sign * time]
@@ -137,6 +139,12 @@ def gravity_sigma(log: MotionLog, drive: Drive) -> float:
     amplitudes: Array = regression.values[:2]
     share = amplitudes / max(float(np.linalg.norm(amplitudes)), 1e-300)
     variance = float(share @ regression.covariance[:2, :2] @ share)
+    if motion.wind_up is None:
+        of_sine, of_cosine, inertia = regression.values[:3]
+        torque = of_sine * np.sin(angle) + of_cosine * np.cos(angle) + ratio * inertia * motion.acceleration
+        steepness = (of_sine * np.cos(angle) - of_cosine * np.sin(angle)) / ratio
+        by_wind_up = motion.filtered((steepness * drive.gear.stiffness.twist(torque))[np.newaxis])[0]
+        variance += float(share @ solved(columns, by_wind_up)[:2]) ** 2
     return float(np.sqrt(variance)) if variance >= 0.0 else np.inf  # nan of an infinite variance, too
 
 
@@ -206,7 +214,7 @@ def sliding_squares(log: MotionLog, drive: Drive) -> tuple[Array, Array]:
 
 def _columns(log: MotionLog, drive: Drive) -> Array:
     motion, ratio = log.motion, drive.gear.kinematics.ratio
-    angle = motion.angle / ratio
+    angle = motion.output_angle(ratio)
     sign = np.tanh(motion.speed / turnover_speed(motion.speed))
     offset = np.full_like(angle, float(log.both_ways))  # which one direction alone does not separate from friction
     series = [motion.acceleration, motion.speed, sign, offset, np.sin(angle) / ratio, np.cos(angle) / ratio]

@@ -491,7 +491,7 @@ def _mistakes(recording: Recording, ratio: float, columns: Mapping[str, str]) ->
 def _squares(log: MotionLog, drive: Drive, factor: float, delay: float) -> Array:
     """Return the squares that least squares leaves in the pass band with the angle times a factor, shape (n,)."""
     motion = log.motion
-    speed, angle = motion.speed, factor * motion.angle / drive.gear.kinematics.ratio
+    speed, angle = motion.speed, factor * motion.output_angle(drive.gear.kinematics.ratio)
     sign = np.sign(speed)
     friction = (speed, sign, np.ones_like(speed), speed * np.abs(speed), sign * np.sqrt(np.abs(speed)))
     series = np.stack([motion.acceleration, *friction, np.sin(angle), np.cos(angle)])

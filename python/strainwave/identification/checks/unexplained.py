@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import Check, FileEstimate, error_in_words
 from strainwave.identification.results.gear_so_far import geared
-from strainwave.messages import as_option
+from strainwave.messages import as_option, listed
 from strainwave.statistics.residuals import shape
 from strainwave.statistics.scale import noise_sigma
 from strainwave.typeset import quantity
@@ -35,6 +35,25 @@ MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by mor
 SHAPE_OF_RESIDUALS = "shape of what is left"
 MAX_CHANCE_OF_SHAPE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
 MAX_SHARE_OF_SHAPE = 0.25  # of what varies: models of real joints leave up to 16 %
+OVER_OUTPUT, OVER_SPEED, OVER_TURN, OVER_LOOP = "the angle of the output", "the speed", "the turn of the input", "the loop"
+MISSING = {  # what a model lacks, whose residual has a shape over each of these, and what to do
+    OVER_OUTPUT: (
+        "a torque that changes with the angle of the output: of other joints that move, of a cable or of a second load",
+        "move the joint alone, or give the torque of the other joints as --column rigid_torque=NAME",
+    ),
+    OVER_SPEED: (
+        "a friction that changes otherwise with the speed: by the temperature, the load, or at low speed",
+        "see with --rank which law of friction predicts best, and record all speeds several times, in both directions",
+    ),
+    OVER_TURN: (
+        "a ripple over the turn of the input: a detent of the motor, or friction of the wave generator",
+        "see its orders with strainwave orders, and record whole turns at several speeds",
+    ),
+    OVER_LOOP: (
+        "a part of the spring or the hysteresis that its laws do not have, or a slip of the bench",
+        "see with --rank which model predicts best, and whether the loops lie on each other",
+    ),
+}
 MIN_SHARE_OF_SHAPE = 0.01  # of what varies: a smaller one is no remark
 
 
@@ -199,23 +218,30 @@ def _likely(recording: Recording, drive: Drive, columns: Mapping[str, str]) -> I
 # ---- Shape of residuals ----------------------------------------------------------------------------------------------
 
 
-def has_small_shape(check: Check) -> bool:
-    """True for a check of a shape that is there, and too small to fail."""
+def has_shape(check: Check) -> bool:
+    """True for a check of a shape that is there, and does not fail."""
     least = MIN_SHARE_OF_SHAPE / MAX_SHARE_OF_SHAPE * check.limit
     return check.name == SHAPE_OF_RESIDUALS and least < check.value and not check.failed
 
 
 class Judged(NamedTuple):
-    """Check of the shape of residuals, None for too few samples, and a remark if the shape is significant but small."""
+    """Check of the shape of residuals, none for too few samples, and a remark if the shape is significant and does not fail."""
 
     checks: tuple[Check, ...] = ()
     remarks: tuple[str, ...] = ()
 
 
 def judged_shape(
-    residual: Array, abscissae: Mapping[str, Array], varies: float, unit: str, source: str, *, ordered: bool = False
+    residual: Array,
+    abscissae: Mapping[str, Array],
+    varies: float,
+    unit: str,
+    source: str,
+    *,
+    ordered: bool = False,
+    biased: Callable[[str], Sequence[str]] | None = None,
 ) -> Judged:
-    """Return the check that what a model leaves has no large shape, and a remark on a small one.
+    """Return the check that what a model leaves has no large shape, and a remark on one that does not fail.
 
     Args:
         residual: measured less modelled, in the order of the samples, shape (n,)
@@ -224,16 +250,37 @@ def judged_shape(
         unit: of both
         source: name of the file
         ordered: True if the samples are in the order of their only abscissa
+        biased: returns the paths of the numbers that a shape over an abscissa moves by more than their uncertainty: a large
+            shape fails if there are any; without it every large one fails
     """
-    tried = {name: shape(residual, over, ordered=ordered) for name, over in abscissae.items()}
-    sizes = {name: each.size if each.chance < MAX_CHANCE_OF_SHAPE else 0.0 for name, each in tried.items() if each is not None}
+    sizes = _sizes(residual, abscissae, ordered=ordered)
     if not sizes:
         return Judged()
     name = max(sizes, key=lambda each: sizes[each])
     size, limit = sizes[name], MAX_SHARE_OF_SHAPE * varies
     words = f"the residual has a shape over {name}: RMS {error_in_words(size, unit, varies)}"
-    check = Check(
-        SHAPE_OF_RESIDUALS, source, size, limit, unit, size > limit, words if size > limit else "",
-        "look at the residual below the picture: the model lacks what it shows there, or a column is of another joint",
-    )  # fmt: skip
-    return Judged((check,), (words,) if MIN_SHARE_OF_SHAPE * varies < size <= limit else ())
+    large, (missing, remedy) = size > limit, MISSING[name]
+    numbers = biased(name) if large and biased is not None else ()
+    failed = large and (biased is None or bool(numbers))
+    words += f"; the model lacks {missing}" if large else ""
+    moved = f", which moves {listed(numbers)} by more than the uncertainty" if numbers else ""
+    check = Check(SHAPE_OF_RESIDUALS, source, size, limit, unit, failed, f"{words}{moved}" if failed else "", remedy)
+    remark = f"{words}. It moves no number that is determined by more than its uncertainty: {remedy}" if large else words
+    return Judged((check,), (remark,) if MIN_SHARE_OF_SHAPE * varies < size and not failed else ())
+
+
+def largest_shape(residual: Array, abscissae: Mapping[str, Array], varies: float) -> str:
+    """Return the abscissa over which a residual has its largest shape; empty if none is significant, or large enough to state.
+
+    Args:
+        residual, abscissae, varies: as `judged_shape`
+    """
+    sizes = _sizes(residual, abscissae)
+    name = max(sizes, key=lambda each: sizes[each], default="")
+    return name if name and sizes[name] > MIN_SHARE_OF_SHAPE * varies else ""
+
+
+def _sizes(residual: Array, abscissae: Mapping[str, Array], *, ordered: bool = False) -> dict[str, float]:
+    """Return the size of the shape over each abscissa, 0 if it is not significant; without those of too few samples."""
+    tried = {name: shape(residual, over, ordered=ordered) for name, over in abscissae.items()}
+    return {name: each.size if each.chance < MAX_CHANCE_OF_SHAPE else 0.0 for name, each in tried.items() if each is not None}

@@ -27,6 +27,7 @@ from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
 from strainwave.parameters import Parameter, every, parameters as chosen
 from strainwave.presentation import Pictured, Presented, Row, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import outputs
 from strainwave.statistics.determined_sum import DeterminedSum, sum_by_information
@@ -172,6 +173,7 @@ def plan_experiments(
     durations: Mapping[str, float] | None = None,
     commands: Mapping[str, Scenario] | None = None,
     sample: float = SAMPLE_TIME,
+    progress: Progress = None,
 ) -> ExperimentPlan:
     """Return the measurements that determine chosen parameters best in a given time.
 
@@ -204,6 +206,7 @@ def plan_experiments(
         durations: of one "friction" speed one way and one "torsion" loop [s]; 20 s and 300 s if not given
         commands: for motion, by name: from rest, what the drive's control takes; shares of them are tried
         sample: distance of the samples of a run [s]
+        progress: as of `sw.simulate`
 
     Returns:
         The measurements with their settings and durations [s], and the standard deviation of each parameter before and after
@@ -239,14 +242,18 @@ def plan_experiments(
     }
     gear, of_gear = (whole.gear, [path.removeprefix("gear.") for path in paths]) if isinstance(whole, Drive) else (whole, paths)
     measurements: list[CandidateMeasurement] = []
-    if "friction" in kinds:
-        measurements += possible.friction(gear, of_gear, limits, noise, sensors, lasting["friction"])
-    if "torsion" in kinds:
-        measurements += possible.torsion(gear, of_gear, limits, noise, sensors, lasting["torsion"])
-    if "motion" in kinds:
-        if not isinstance(whole, Drive) or not commands:
-            raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
-        measurements += possible.motion(whole, paths, limits, noise, commands, arguments.seconds("sample", sample))
+    with in_turn(progress, len(kinds)) as turn:
+        if "friction" in kinds:
+            turn("friction")
+            measurements += possible.friction(gear, of_gear, limits, noise, sensors, lasting["friction"])
+        if "torsion" in kinds:
+            turn("torsion")
+            measurements += possible.torsion(gear, of_gear, limits, noise, sensors, lasting["torsion"])
+        if "motion" in kinds:
+            turn("motion")
+            if not isinstance(whole, Drive) or not commands:
+                raise ValueError('motion needs a drive, and commands for it, as commands={"chirp": sw.scenario.chirp(…)}')
+            measurements += possible.motion(whole, paths, limits, noise, commands, arguments.seconds("sample", sample))
     if not measurements and kinds == ["torsion"]:
         raise ValueError(
             f"no loop up to {limits.torque:g} N.m has {possible.MIN_STEPS:g} times the resolution of its sensors; give a finer "

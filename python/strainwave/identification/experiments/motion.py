@@ -46,6 +46,7 @@ class Motion(ComparedByFields):
         resting: True if it does not move beyond the noise of the angle, shape (n,)
         every: one of so many samples of the grid is compared
         cutoff: of the filter on the angle [Hz]; the pass band ends at 0.4 of it; infinite for the full band
+        wind_up: angle of the output less that of the shaft over the ratio [rad], shape (n,); None if it was not measured
     """
 
     time: Array
@@ -57,6 +58,11 @@ class Motion(ComparedByFields):
     resting: NDArray[np.bool_]
     every: int
     cutoff: float
+    wind_up: Array | None = None
+
+    def output_angle(self, ratio: float) -> Array:
+        """Return the angle of the output [rad], shape (n,): that of a rigid gear if the output was not measured."""
+        return self.angle / ratio if self.wind_up is None else self.angle / ratio + self.wind_up
 
     @cached_property
     def step(self) -> float:

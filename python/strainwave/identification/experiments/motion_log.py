@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Drive, _core, arguments
+from strainwave import Drive, _core, arguments, loads
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
@@ -44,6 +44,7 @@ OF_MOTOR = ("motor.torque_constant", "motor.resistance", "motor.back_emf")  # nu
 TURNS_OVER = 0.005  # of a fast speed: about there the sign of friction turns over, so that it is smooth at rest (assumed)
 SHARE_OF = "share of "  # in front of the name of a term of other joints: the path of its share
 FAST_QUANTILE = 0.99  # of the size of the speed
+MAX_OFF_RATIO = 0.01  # relative difference of the ratio of two encoders from that of the drive, which then turns the load
 MIN_INERTIA = 1e-12  # kg.m2: a load and a motor must have some
 MIN_INERTIA_SHARE = 0.02  # of all that turns: from where the fit of an inertia starts
 INPUT_COUNT, LOAD_PLACE, TEMPERATURE_PLACE = 6, 2, 4  # inputs of the inverse dynamics, and places of two of them
@@ -113,7 +114,7 @@ class MotionLog(ComparedByFields):
         sound = ~spoilt(values)
         force = np.asarray(Akima1DInterpolator(time[sound], values[sound], extrapolate=True)(motion.time))  # as the angle is
         sound_there = (on_grid(sound.astype(float)) > MIN_SOUND) & ~in_gap(time, motion.time, motion.step)
-        motion = replace(motion, known=motion.known & sound_there)
+        motion = replace(motion, known=motion.known & sound_there, wind_up=_wind_up(recording, motion, drive))
         _check_moves(motion, time)
         extra = on_grid(recording.values("rigid_torque", "N.m")) if "rigid_torque" in recording else np.zeros_like(motion.time)
         return cls(
@@ -336,21 +337,43 @@ def needed_torque(drive: Drive, motion: Motion, others: Array, paths: Sequence[s
     Returns:
         torque, shape (n,); derivatives, shape (paths, n), 0 by numbers that a rigid drive lacks
     """
-    gear = drive.gear  # without stiffness, hysteresis and kinematic error, which move no shaft along a measured motion
+    gear = drive.gear  # without stiffness, hysteresis and kinematic error: a measured motion contains what they do
     friction = {place: getattr(gear, place) for place in ("friction_input", "friction_mesh", "friction_output")}
     rigid = drive.replace(gear=Gear(kinematics=gear.kinematics, input_inertia=gear.input_inertia, **friction))
     numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(rigid))}
     inputs = np.zeros((len(motion.time), INPUT_COUNT))
-    inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others, ROOM_TEMPERATURE
+    by_wind_up = _gravity_by_wind_up(drive, motion)
+    inputs[:, LOAD_PLACE], inputs[:, TEMPERATURE_PLACE] = others + by_wind_up.get("", 0.0), ROOM_TEMPERATURE
     places = [place for place, path in enumerate(paths) if path in numbers]
     speed, steps = np.where(motion.resting, 0.0, motion.speed), np.diff(motion.time, prepend=motion.time[0])
     states = np.column_stack([motion.angle, speed, motion.acceleration, steps])
     asked = [numbers[paths[place]] for place in places]
     with kernels.prepared(rigid, "inverse_dynamics", len(inputs)):
         torque, by_numbers = _core.inverse_dynamics(rigid, states, inputs, asked)
-    slopes = np.zeros((len(paths), len(torque)))
-    slopes[places] = by_numbers
+        slopes = np.zeros((len(paths), len(torque)))
+        slopes[places] = by_numbers
+        if by_wind_up.keys() & set(paths):
+            step = RELATIVE_STEP * max(
+                float(np.abs(inputs[:, LOAD_PLACE]).max()), abs(gear.kinematics.ratio) * float(np.abs(torque).max())
+            )
+            inputs[:, LOAD_PLACE] += step
+            by_load = (_core.inverse_dynamics(rigid, states, inputs, [])[0] - torque) / step
+            slopes += [by_load * by_wind_up.get(path, 0.0) for path in paths]
     return torque, slopes
+
+
+def _gravity_by_wind_up(drive: Drive, motion: Motion) -> dict[str, Array]:
+    """Return the torque that a wound-up gear adds to the gravity of a rigid one, by the name "", and its derivatives by path.
+
+    The load hangs at the angle of the output. Empty if it was not measured beside the input, or if the load has no gravity.
+    """
+    load, ratio = drive.load, drive.gear.kinematics.ratio
+    if motion.wind_up is None or not motion.wind_up.any() or not isinstance(load, loads.Pendulum):
+        return {}
+    there, rigid = motion.output_angle(ratio) + load.gravity_phase, motion.angle / ratio + load.gravity_phase
+    by_gravity, by_phase = np.sin(there) - np.sin(rigid), np.cos(there) - np.cos(rigid)
+    torque = load.gravity_torque
+    return {"": torque * by_gravity, "load.gravity_torque": by_gravity, "load.gravity_phase": torque * by_phase}
 
 
 def transmitted_torque(log: MotionLog, drive: Drive) -> Array:
@@ -417,6 +440,24 @@ def _clipped(values: Array) -> NDArray[np.bool_]:
     often = counts[upper].max() >= max(MIN_CLIPPED, 10.0 * usual)
     end = often and np.mean(values > level) < 0.03
     return (values >= level) if end else np.zeros(len(values), bool)
+
+
+def _wind_up(recording: Recording, motion: Motion, drive: Drive) -> Array | None:
+    """Return the angle of the output less that of the input over the ratio, about its mean [rad], shape (m,).
+
+    0 if the output alone was measured. None if the input alone was, or if both do not turn in the ratio of the drive.
+    """
+    if "output_angle" not in recording:
+        return None
+    if "input_angle" not in recording:
+        return np.zeros_like(motion.time)
+    output = np.interp(motion.time, recording.time, sensible(recording, "output_angle", "rad"))
+    rigid = motion.angle / drive.gear.kinematics.ratio
+    share = float(np.polyfit(rigid - rigid.mean(), output - output.mean(), 1)[0])
+    if abs(abs(share) - 1.0) > MAX_OFF_RATIO:
+        return None
+    wind_up = np.sign(share) * output - rigid
+    return np.asarray(wind_up - wind_up.mean())
 
 
 def _input_angle(recording: Recording, drive: Drive) -> Array:

@@ -23,6 +23,7 @@ from strainwave.identification.fitting.problem import LOSSES, FitRecord, LossNam
 from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.presentation import Pictured, Presented, Row, counted
+from strainwave.progress import Progress, in_turn
 from strainwave.simulation.resolution import warn_of_bristles
 from strainwave.simulation.threads import one_thread_of_algebra
 from strainwave.statistics.residuals import correlation_length
@@ -41,6 +42,7 @@ MAX_START_SIGMA = 3.0  # standard deviations of a prior: an unknown that ended f
 MAX_WEIGHT_CHANGE = 0.2  # relative, of a pass after which no other one follows
 MAX_SYMMETRIC_SIGMA = 0.2  # standard deviation over the distance to a limit; with a larger one the interval is not symmetric
 OF_GEAR = (FrictionTable, TorsionLoop)  # experiments on a gear, also if the model is a drive
+ABSCISSAE = ((FrictionTable, "speed", "rad/s"), (TorsionLoop, "twist", "rad"))  # of others time
 OF_GEAR_COLUMNS = ({"speed", "torque"}, {"twist", "torque"}, {"input_angle", "input_torque"})
 
 
@@ -71,6 +73,27 @@ class RecordFit(ComparedByFields, Presented):
         """Return the root mean square residual of each channel over the samples that took part, or over those that did not."""
         residuals = self.residuals[:, ~self.training if held_out else self.training]
         return np.sqrt(np.mean(residuals**2, axis=1)) if residuals.size else np.full(len(residuals), np.nan)
+
+    def curves(self, sigmas: Array | None = None) -> tuple[Recording, ...]:
+        """Return the curves of each channel, as `Fit.curves`.
+
+        Args:
+            sigmas: standard deviation of the prediction, shape (channels, n); no `sigma` where it is not given or infinite
+        """
+        experiment: Any = self.experiment
+        is_log = not isinstance(experiment, OF_GEAR)
+        over, unit = (
+            ("time", "s") if is_log else ("speed", "rad/s") if isinstance(experiment, FrictionTable) else ("twist", "rad")
+        )
+        every = []
+        for place, (channel, channel_unit) in enumerate(zip(experiment.channels, experiment.units, strict=True)):
+            columns = {over: getattr(experiment, over), channel: experiment.measured[place], "modelled": self.predicted[place]}
+            units = {over: unit, channel: channel_unit, "modelled": channel_unit, "held_out": "1"}
+            columns["held_out"] = (~self.training).astype(float)
+            if sigmas is not None and np.isfinite(sigmas[place]).all():
+                columns["sigma"], units["sigma"] = sigmas[place], channel_unit
+            every.append(Recording(columns, units))
+        return tuple(every)
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,6 +216,54 @@ class Fit(ComparedByFields, Pictured):
                         "try sw.identification.minima(fit)"
                     )
 
+    def part(self, record: str | None = None) -> RecordFit:
+        """Return the part of a record by its name, the first one if no name is given.
+
+        Raises:
+            ValueError: no record has that name
+            TypeError: the name is no text
+        """
+        if record is None:
+            return self.parts[0]
+        names = [part.name for part in self.parts]
+        if arguments.text("record", record) not in names:
+            raise ValueError(f"no record {quoted(record)}; there are {listed(names)}")
+        return self.parts[names.index(record)]
+
+    def curves(self, record: str | None = None) -> tuple[Recording, ...]:
+        """Return measurement and prediction of each channel of a record, to be drawn.
+
+        Args:
+            record: its name, as in `parts`; the first one if not given
+
+        Returns:
+            Of each channel: speed, twist or time; the channel, under its name; `modelled`, the prediction; `held_out`, 1 where
+            a sample took no part in the fit; and of a fit to one record `sigma`, the standard deviation of `modelled` by that
+            of the estimates, if the data determine all of them
+
+        The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
+        prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
+
+        Raises:
+            ValueError: no record has that name
+            TypeError: the name is no text
+        """
+        return self.part(record).curves(self._sigmas() if len(self.parts) == 1 else None)
+
+    def _sigmas(self) -> Array:
+        """Return the standard deviation of the prediction of the first record, shape (channels, n)."""
+        part, own = self.parts[0], {each.path: place for place, each in enumerate(self.estimates)}
+        zeros = [each.name for each in part.experiment.nuisances]
+        numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
+        free = [path for path in own if path in numbers and path not in zeros]
+        nuisances = np.array([self.estimates[own[name]].value for name in zeros])
+        _, slopes = part.experiment.predict(part.model, [numbers[path] for path in free], nuisances)
+        places = [own[path] for path in (*free, *zeros)]
+        covariance = self.covariance[np.ix_(places, places)]
+        with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
+            variance: Array = np.einsum("icn,ij,jcn->cn", slopes, covariance, slopes, optimize=True)
+        return np.sqrt(np.clip(variance, 0.0, None))
+
     def plot(self, record: str | None = None) -> Figure:
         """Return a figure of each channel of a record: measured and predicted, and the residual below.
 
@@ -206,12 +277,12 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name
             TypeError: the name is no text
         """
-        from strainwave.identification.results.pictures import part_named, pictures_figure, pictures_of
+        from strainwave.identification.results.pictures import picture_of, pictures_figure
 
-        part = part_named(self, record)
+        part = self.part(record)
         channels = in_a_sentence([channel.replace("_", " ") for channel in part.experiment.channels])
         of = f", {part.name}" if len(self.parts) > 1 else ""
-        return pictures_figure(pictures_of(self, record), f"Measured and predicted {channels}{of}")
+        return pictures_figure([picture_of(curves) for curves in self.curves(record)], f"Measured and predicted {channels}{of}")
 
     def plot_residual_spectrum(self, record: str | None = None) -> Figure:
         """Return a figure of the amplitude spectra of a log: of each channel measured, and of its residual.
@@ -226,10 +297,11 @@ class Fit(ComparedByFields, Pictured):
             ValueError: no record has that name, or the record has no time
             TypeError: the name is no text
         """
-        from strainwave.identification.results.pictures import part_named, spectrum_figure
+        from strainwave.identification.results.pictures import spectrum_figure
 
-        part = part_named(self, record)
-        return spectrum_figure(part, f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}")
+        part = self.part(record)
+        title = f"Spectrum of the residual{f', {part.name}' if len(self.parts) > 1 else ''}"
+        return spectrum_figure(part.experiment, part.residuals, title)
 
     def _headline(self) -> str:
         left = list(self._left())
@@ -281,6 +353,7 @@ def fit(
     ties: Mapping[str, str | tuple[str, float]] | None = None,
     fixed: Mapping[str, float] | None = None,
     per_record: Sequence[str] = (),
+    progress: Progress = None,
 ) -> Fit:
     """Fit free parameters of a model to measurements by least squares.
 
@@ -311,6 +384,7 @@ def fit(
         ties: parameters that follow a free one, by path: its path, or its path and the factor that it is multiplied by
         fixed: values of parameters that are not free, by path; they take the place of those of the model
         per_record: free parameters of which each record has its own value, as the load or what the temperature changes
+        progress: as of `sw.simulate`
 
     Returns:
         the fitted model with its uncertainty
@@ -350,14 +424,15 @@ def fit(
         for own, each in zip(_models(model, asked), records.values(), strict=True)
     ]
     problem = problem_of(asked, model, experiments, _masks(training, list(records)), loss)
-    for experiment, (predicted, _) in zip(experiments, problem.predict(problem.start()), strict=True):
-        if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):  # nothing changes with its parameters
-            raise ValueError(
-                "the model does not move under this command, though the drive did: nothing can be fitted from there. Start "
-                "with less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see whether the unit "
-                "of the command is right"
-            )
-    fitted = solved_from(problem, problem.start())
+    with in_turn(progress) as problem.watch:
+        for experiment, (predicted, _) in zip(experiments, problem.predict(problem.start()), strict=True):
+            if isinstance(experiment, DriveLog) and experiment.stands_still(predicted):  # nothing changes with its parameters
+                raise ValueError(
+                    "the model does not move under this command, though the drive did: nothing can be fitted from there. "
+                    "Start with less friction, as in drive.replace(gear=…) with a smaller coulomb and breakaway; or see "
+                    "whether the unit of the command is right"
+                )
+        fitted = solved_from(problem, problem.start())
     for part in fitted.parts:
         if isinstance(part.experiment, DriveLog | DrivenLog):
             moved = part.model if isinstance(part.experiment, DriveLog) else driven(part.model)

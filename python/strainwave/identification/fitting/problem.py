@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Literal, Protocol
@@ -158,6 +158,7 @@ class Problem:
             if record.samples == 0:
                 raise ValueError(f"training leaves no sample of {name}; leave the record out")
         self.evaluations = 0
+        self.watch: Callable[[str], None] | None = None  # called before each evaluation
         self._drawn = np.zeros(len(plan.priors))
         self._last: tuple[bytes, list[tuple[Array, Array]]] | None = None
 
@@ -176,6 +177,8 @@ class Problem:
         key = x.tobytes()
         if self._last is None or self._last[0] != key:
             self.evaluations += 1
+            if self.watch is not None:
+                self.watch(f"fitting, evaluation {self.evaluations}")
             self._last = key, [record.predict(x) for record in self.records]
         return self._last[1]
 

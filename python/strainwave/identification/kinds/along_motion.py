@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.motion import bands, fit_motion, prior_of_viscous
@@ -15,6 +16,7 @@ from strainwave.identification.candidates.motion_candidate import (
     MotionCandidate,
     confirmed,
     inertia_at_input,
+    nuisances_of,
     other_laws,
     refit,
     slopes_by_rotor,
@@ -23,7 +25,7 @@ from strainwave.identification.candidates.motion_candidate import (
     with_rotor,
 )
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding
-from strainwave.identification.candidates.plain import fit_plain, gravity_sigma, moving
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, best_delay, fit_plain, gravity_sigma, moving
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
@@ -40,11 +42,11 @@ from strainwave.identification.checks.logs import (
     unit_of_torque,
 )
 from strainwave.identification.checks.sizes import friction_of_log, input_speed
-from strainwave.identification.checks.unexplained import Judged, judged_shape
+from strainwave.identification.checks.unexplained import OVER_OUTPUT, OVER_SPEED, OVER_TURN, Judged, judged_shape, largest_shape
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, transmitted_torque, turnover_speed
-from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.fit import Fit, solved_problem
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import (
@@ -63,7 +65,6 @@ from strainwave.identification.results.file_result import (
     Check,
     FileEstimate,
     FileResult,
-    HeldOut,
     is_uncertain,
 )
 from strainwave.identification.results.gear_so_far import GearSoFar
@@ -80,7 +81,10 @@ from strainwave.messages import listed
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
+from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
+Array = NDArray[np.float64]
 SLIDING_SPEED_FACTOR = 4.0  # of the speed at which friction turns its sign: beyond it the mean over both senses is within 0.1 %
 MAX_OFF_INERTIA = 0.1  # relative difference of a given inertia from that of the log
 FRICTION_PARTS = ("friction_input", "friction_mesh")  # parts of the gear
@@ -122,7 +126,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     between = FileResult(name)
     if set(ENCODERS) <= set(recording.names):
         errors = _errors(file, recording, abs(start.kinematics.ratio))
-        between, known = between_encoders(prepared, judged, errors, known, name)
+        between, known = between_encoders(prepared, judged, estimates, errors, known, name)
         if any(each.significant and each.shaft == "input" for each in errors.orders):
             between = replace(between, pictures=(*between.pictures, picture_of_turn(errors)))
         checks += [*ratio_of_encoders(errors.ratio, drive, name), *between.checks]
@@ -156,7 +160,7 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
         checks += torque_constant_by_voltage(recording, at_rows, constant, name)
     checks += checks_of_motion(best, drive, recording, held_out, file)
     unchecked = _unchecked(prepared, file, estimates, {check.name for check in checks})
-    shaped = _shape(predicted, log, held_out, ratio, name)
+    shaped = _shape(best, estimates, name)
     remarks += [
         *_scales(unchecked, log.effort), *speed_of_another_clock(file), *another_ratio_of_shafts(file, ratio),
         *file.remarks, *prepared.remarks,
@@ -172,16 +176,78 @@ def fit_along_motion(file: Recognised, known: GearSoFar) -> tuple[FileResult, Ge
     return result, known
 
 
-def _shape(predicted: Recording, log: MotionLog, held_out: HeldOut, ratio: float, source: str) -> Judged:
-    """Return the check of the shape of what a model leaves of a log over angles and speed, and a remark."""
-    moved = moving(log)
-    slides = np.abs(log.motion.speed[moved]) > SLIDING_SPEED_FACTOR * turnover_speed(log.motion.speed)
-    angle, speed = log.motion.angle[moved][slides], log.motion.speed[moved][slides]
-    abscissae = {"the angle of the output": angle / ratio, "the speed": speed}
+def _shape(best: MotionCandidate, estimates: Sequence[FileEstimate], source: str) -> Judged:
+    """Return the check of the shape of what a model leaves of a log over angles and speed, and a remark.
+
+    A large shape fails if it moves a number by more than three standard deviations, of which it is no part here.
+    """
+    residual, abscissae, varies = _left_over(best)
+
+    def biased(over: str) -> list[str]:
+        shifts = _shifts_by_shape(best, over)
+        written = {each.path: each.sigma for each in estimates if not each.why}
+        others = {path: np.sqrt(max(sigma**2 - shifts.get(path, 0.0) ** 2, 0.0)) for path, sigma in written.items()}
+        return [path for path, sigma in others.items() if abs(shifts.get(path, 0.0)) > SIGNIFICANCE_SIGMA * sigma]
+
+    return judged_shape(residual, abscissae, varies, best.log.units[0], source, biased=biased)
+
+
+def _left_over(best: MotionCandidate) -> tuple[Array, dict[str, Array], float]:
+    """Return what a model leaves of a log where it slides, angles and speed by their names, and how the effort varies there.
+
+    The model is fitted to the whole log: what it leaves of a stretch held out contains the error of its numbers, too.
+    """
+    log, rows = best.log, moving(best.log)
+    rows &= np.abs(log.motion.speed) > SLIDING_SPEED_FACTOR * turnover_speed(log.motion.speed)
+    residual = best.left(best.fit.parts[0].model, nuisances_of(best.fit))[rows]
+    angle = log.motion.angle[rows]
+    abscissae = {OVER_OUTPUT: angle / best.model.drive.gear.kinematics.ratio, OVER_SPEED: log.motion.speed[rows]}
     if np.ptp(angle) > 2.0 * np.pi:
-        abscissae["the turn of the input"] = np.mod(angle, 2.0 * np.pi)
-    residual = (predicted[log.effort] - predicted["modelled"])[slides]
-    return judged_shape(residual, abscissae, held_out.zero, held_out.unit, source)
+        abscissae[OVER_TURN] = np.mod(angle, 2.0 * np.pi)
+    return residual, abscissae, float(np.std(log.recorded[rows]))
+
+
+def _shifts_by_shape(best: MotionCandidate, over: str) -> dict[str, float]:
+    """Return how far the numbers of a fit move by a torque with a shape over an abscissa, as `_shifts_by`."""
+    motion, ratio = best.log.motion, best.model.drive.gear.kinematics.ratio
+    output, speed = motion.angle / ratio, motion.speed
+    shapes = {
+        OVER_OUTPUT: [output, np.sin(2.0 * output), np.cos(2.0 * output)],
+        OVER_SPEED: [speed * np.abs(speed), np.sign(speed) * np.sqrt(np.abs(speed))],
+        OVER_TURN: [wave(order * motion.angle) for order in (1.0, 2.0) for wave in (np.sin, np.cos)],
+    }[over]
+    return _shifts_by(best, shapes)
+
+
+def _shifts_by_late_effort(best: MotionCandidate) -> dict[str, float]:
+    """Return how far the numbers of a fit move by a delay that is too long to be fitted, as `_shifts_by`; empty without one."""
+    if not _is_too_late(best):
+        return {}
+    return _shifts_by(best, [np.gradient(best.log.whole(best.fit.parts[0].model, nuisances_of(best.fit)))])
+
+
+def _is_too_late(best: MotionCandidate) -> bool:
+    """True if plain least squares predicts best with the longest delay that is tried, and the model has none."""
+    late = abs(best_delay(best.log, best.model.drive)) > (MAX_DELAY_SAMPLES - 0.5) * best.log.motion.step
+    return late and not best.log.delayed
+
+
+def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, float]:
+    """Return how far the numbers of a fit move if shares of further series of the effort are fitted too, by path.
+
+    Args:
+        best: the fit of a log
+        series: on the grid of its motion, shape (m,) each
+    """
+    problem, x = solved_problem(best.fit)
+    weights = problem.weights(x)
+    weight = float(weights[0].rows.item())
+    columns = np.hstack([problem.jacobian(x, weights), weight * best.log.motion.filtered(np.stack(series)).T])
+    of_priors, right = problem.prior_rows()
+    columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(series)))])])
+    left = np.concatenate([weight * problem.residuals(x)[0][0], right - of_priors @ x])
+    shifts = solved(columns, left)
+    return {plain(each.path): float(shift) for each, shift in zip(problem.plan.unknowns, shifts, strict=False)}
 
 
 def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
@@ -218,7 +284,12 @@ def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
 
 
 def _delay(best: MotionCandidate) -> Iterator[str]:
-    """Yield the sentence about a delay that was fitted."""
+    """Yield the sentence about a delay that was fitted, or that is too long to be fitted."""
+    if _is_too_late(best):
+        yield (
+            f"a delay of {best.log.effort} of {MAX_DELAY_SAMPLES} samples or more would fit better: it was "
+            "filtered, or another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
+        )
     for nuisance in best.fit.estimates:
         if nuisance.path == "delay":
             way = "behind" if nuisance.value > 0.0 else "ahead of"
@@ -375,8 +446,11 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
     encoder = "of input_angle" if "input_angle" in taken.recording else "of output_angle"  # from whose zero the phase counts
     nuisances = {nuisance.name for part in best.fit.parts for nuisance in part.experiment.nuisances}
     spread, by_rotor = spread_by_blocks(best), slopes_by_rotor(best)
+    residual, abscissae, varies = _left_over(best)
+    shape_over = largest_shape(residual, abscissae, varies)
+    moved_by = [*([_shifts_by_shape(best, shape_over)] if shape_over else []), _shifts_by_late_effort(best)]
     unknown = 0.0 if taken.motor_known else SHARE_OF_UNKNOWN_ROTOR * inertia_at_input(best)
-    gravity = next(((each.value, each.sigma) for each in best.fit.estimates if each.path == "load.gravity_torque"), (0.0, 0.0))
+    gravity = 0.0, 0.0  # and its standard deviation; it comes before its phase
     for estimate in best.fit.estimates:
         if estimate.path in nuisances or estimate.path in best.model.ties or estimate.path in taken.given:
             continue
@@ -385,10 +459,16 @@ def _of_motion(best: MotionCandidate, apart: Mapping[str, float], taken: Prepare
             continue
         law = encoder if path == "load.gravity_phase" else ""
         turned = by_rotor.get(estimate.path, 0.0) if path.startswith("gear.") else 0.0
-        own = max(estimate.sigma, spread.get(path, 0.0)), apart.get(path, 0.0), turned * unknown
+        own = (
+            max(estimate.sigma, spread.get(path, 0.0)),
+            apart.get(path, 0.0),
+            turned * unknown,
+            *(each.get(path, 0.0) for each in moved_by),
+        )
         sigma = float(np.linalg.norm(own))
         if path == "load.gravity_torque" and not best.log.regressors:
             sigma = max(sigma, gravity_sigma(best.log, best.model.drive))
+        gravity = (estimate.value, sigma) if path == "load.gravity_torque" else gravity
         number = FileEstimate(path, estimate.unit, estimate.value, sigma, law)
         offset = independent.get(path, 0.0)
         number = number.resting_on(taken.relative, offset + induced.get(path, 0.0))

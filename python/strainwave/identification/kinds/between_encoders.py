@@ -19,7 +19,6 @@ from strainwave.identification.experiments.drive_log import DrivenLog
 from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MotionLog, inertia_of
 from strainwave.identification.fitting.fit import Fit
-from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.prepared_log import RECORDER_BIAS, PreparedLog
 from strainwave.identification.results.file_result import (
     GRAVITY_PATH,
@@ -50,18 +49,24 @@ START_MOTOR = 1e-4  # kg.m2: initial inertia of a motor (assumed)
 
 
 def between_encoders(
-    taken: PreparedLog, best: MotionCandidate, errors: TransmissionError, known: GearSoFar, source: str
+    taken: PreparedLog,
+    best: MotionCandidate,
+    along: Sequence[FileEstimate],
+    errors: TransmissionError,
+    known: GearSoFar,
+    source: str,
 ) -> tuple[FileResult, GearSoFar]:
     """Return spring, hysteresis, damping and kinematic error by a log of both encoders, or why not; and the gear with them.
 
     Args:
         taken: the log
         best: the fit along its motion
+        along: its estimates, of which one is the torque that those between the encoders count from
         errors: orders of the kinematic error, from which the fit starts
         known: before the log
         source: name of the log
     """
-    drive, estimates = best.fit.parts[0].model, {each.path: each for each in best.fit.estimates}
+    drive, estimates = best.fit.parts[0].model, {each.path: each for each in along}
     try:
         _check(taken.log, drive, errors)
         scale = _scale(estimates, taken, drive)
@@ -142,7 +147,7 @@ class _Scale:
         return float(np.hypot(self.own, self.common))
 
 
-def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) -> _Scale:
+def _scale(estimates: Mapping[str, FileEstimate], taken: PreparedLog, drive: Drive) -> _Scale:
     """Return what torques count from: gravity, which slow motion determines without the motor's inertia, or the load's inertia.
 
     An inertia of the load that a person gave is exact.
@@ -156,12 +161,12 @@ def _scale(estimates: Mapping[str, Estimate], taken: PreparedLog, drive: Drive) 
     gravity, inertia = (
         each if (each := estimates.get(path)) and each.value > 0.0 else None for path in (GRAVITY_PATH, LOAD_INERTIA)
     )
-    by_gravity = [] if gravity is None else [_Scale(GRAVITY_PATH, gravity.sigma / gravity.value, taken.relative)]
+    by_gravity = [] if gravity is None else [_Scale(GRAVITY_PATH, gravity.own / gravity.value, taken.relative)]
     by_inertia = []
     if inertia is not None and taken.motor_known:
         rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
         common = float(np.hypot(taken.relative * (inertia.value + rotor), taken.rotor)) / inertia.value
-        by_inertia = [_Scale(LOAD_INERTIA, inertia.sigma / inertia.value, common)]
+        by_inertia = [_Scale(LOAD_INERTIA, inertia.own / inertia.value, common)]
     usable = [each for each in (*by_gravity, *by_inertia) if each.relative < MAX_RELATIVE_SIGMA]
     if not usable:
         missing = "is not known: give --constant motor_inertia=NUMBER"
@@ -229,7 +234,7 @@ def _motor(
     late = next((each.value for each in found.fit.estimates if each.path == DELAY), 0.0)
     torque = carried.inertia * np.interp(motion.time + late, output.time, output.acceleration)
     if isinstance(carried, loads.Pendulum):
-        torque += carried.gravity_torque * np.sin(motion.angle / ratio + carried.gravity_phase)
+        torque += carried.gravity_torque * np.sin(motion.output_angle(ratio) + carried.gravity_phase)
     model = replace(
         best.model, log=replace(best.log, extra=best.log.extra + torque),
         drive=drive.replace(load=loads.Inertia(inertia=MIN_INERTIA), motor=drive.motor.replace(inertia=START_MOTOR)),
@@ -264,7 +269,7 @@ def _law_of(path: str, found: ElasticCandidate) -> str:
 
 
 def _inertias(
-    found: ElasticCandidate, scale: _Scale, by_motor: Mapping[str, Estimate], taken: PreparedLog, source: str
+    found: ElasticCandidate, scale: _Scale, by_motor: Mapping[str, FileEstimate], taken: PreparedLog, source: str
 ) -> Iterator[Check]:
     """Yield the check of the inertia of the load by how it winds the gear up and by the torque of the motor.
 
@@ -277,7 +282,7 @@ def _inertias(
     own, sigma = found.fit.estimates[places[LOAD_INERTIA]].value, float(found.sigmas[places[LOAD_INERTIA]])
     drive, rigid = taken.drive, by_motor[LOAD_INERTIA]
     rotor = float((drive.motor.inertia + drive.gear.input_inertia) * drive.gear.kinematics.ratio**2)
-    of_torque = [rigid.sigma, taken.rotor, taken.relative * rotor]
+    of_torque = [rigid.own, taken.rotor, taken.relative * rotor]
     by_torque = rigid.value, float(np.linalg.norm(of_torque))
     unit = "A·s²/rad" if taken.in_current else "kg·m²"
     yield inertias_of_load((own, float(np.hypot(sigma, scale.own * own))), by_torque, unit, source)

@@ -21,7 +21,7 @@ from strainwave.identification.checks.sizes import (
     levels_of_table,
     opposes_motion,
 )
-from strainwave.identification.checks.unexplained import explained, judged_shape
+from strainwave.identification.checks.unexplained import OVER_SPEED, explained, judged_shape
 from strainwave.identification.experiments.friction_table import CONDITIONS, FrictionTable, with_load
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
@@ -38,10 +38,10 @@ from strainwave.identification.reading.roles import (
     pair,
     side_of_table,
 )
-from strainwave.identification.results.file_result import FileResult, HeldOut
+from strainwave.identification.results.file_result import FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar, with_torque
 from strainwave.identification.results.identifiability import JudgedFit, with_friction_at
-from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.pictures import Picture
 from strainwave.identification.results.prediction import (
     Prediction,
     changes_of,
@@ -61,6 +61,7 @@ from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length, rms
+from strainwave.typeset import uncertain_quantity
 
 Array = NDArray[np.float64]
 MAX_ROWS = 500  # of a table that was measured point by point
@@ -222,7 +223,7 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
     checks = [speed_check, levels_of_table(table, name), *friction_of_table(table, best.fit, known.initial.gear, side, name)]
     whole, order = explained(best.fit, name), np.argsort(experiment.speed, kind="stable")
     left, varies = best.fit.residuals[0][order], float(np.std(experiment.torque))
-    shaped = judged_shape(left, {"the speed": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
+    shaped = judged_shape(left, {OVER_SPEED: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
     fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, _shared(best, experiment))
     fit, estimates = fitted.with_set_before(known)
     if any(each.why for each in estimates) and not whole.failed:
@@ -230,12 +231,12 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         paths = [each.path for each in best.fit.estimates]
         fit = written(replace(best, fit=fit), gear, experiment)
         estimates = (*estimates, best_known_friction(best.fit.gear, paths, best.fit.covariance, speeds))
-    estimates = tuple(each.resting_on(uncertain) for each in estimates)
+    estimates = tuple(_beside_a_zero(each, estimates).resting_on(uncertain) for each in estimates)
     result = FileResult(
         name, file, best.name, estimates,
         (*file.remarks, *_remarks(table, best, experiment, known.initial), *hints_of_levels(table), *shaped.remarks),
         (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
-        pictures=(Picture(curves_of(fit), "table", "friction torque, at the input"),),
+        pictures=(Picture(fit.curves()[0], "table", "friction torque, at the input"),),
         held_out=HeldOut(
             "each speed, predicted from the others", "torque", "N.m", best.error, float(np.std(experiment.torque)),
             plain_error(experiment, best.fit.training), samples=len(experiment.torque),
@@ -246,6 +247,16 @@ def fit_table(file: Recognised, table: Recording, uncertain: float, known: GearS
         return result, known
     parts = {"friction_input", "friction_mesh"} if is_loaded(experiment) else {"friction_input"}
     return result, known.with_fit(fit.gear, parts, estimates, name).judged("friction_input", estimates)
+
+
+def _beside_a_zero(estimate: FileEstimate, estimates: Sequence[FileEstimate]) -> FileEstimate:
+    """Return an asymmetry of dry friction, which is determined only together with a zero of the torque; others as they are."""
+    if estimate.why or not estimate.path.endswith(".dry_asymmetry"):
+        return estimate
+    coulomb = next((each.value for each in estimates if each.path.endswith(".coulomb")), 0.0)
+    constant = uncertain_quantity(coulomb * estimate.value, abs(coulomb) * estimate.sigma, "N.m")
+    why = f"a zero of the torque looks the same: both make {constant} together; measure the torque at rest, unloaded"
+    return replace(estimate, why=why, in_combination=True)
 
 
 def _with_torque_and_load(file: Recognised, gear_set: GearSet) -> tuple[Recording, float, tuple[str, ...]]:

@@ -19,6 +19,7 @@ from strainwave.identification.reading.roles import Column, ColumnRoles
 from strainwave.identification.results.file_result import FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.prediction import Prediction
+from strainwave.progress import Progress, in_turn
 
 NOT_PREDICTED = "only logs and tables of friction are predicted"
 
@@ -151,17 +152,20 @@ def unused(recording: Recording, used: Sequence[str]) -> Iterator[str]:
 # ---- Ranking ---------------------------------------------------------------------------------------------------------
 
 
-def rank(start: GearSet, file: Recognised) -> tuple[Ranked, ...]:
+def rank(start: GearSet, file: Recognised, progress: Progress = None) -> tuple[Ranked, ...]:
     """Return all models of a file, the one to take first: the simplest whose error is larger by no more than chance may make.
 
     Args:
         start: the set to start from
         file: a table of friction, a torsion loop, a presliding loop, or a log
+        progress: as of `sw.simulate`
 
     Raises:
         ValueError: the file is none of these, or cannot be fitted
     """
-    return kind_named(file.kind).rank(file.at_ratio(start.gear.kinematics.ratio), GearSoFar(start))
+    with in_turn(progress) as turn:
+        turn(f"models of {file.path.name}")
+        return kind_named(file.kind).rank(file.at_ratio(start.gear.kinematics.ratio), GearSoFar(start))
 
 
 def table_of(ranked: Sequence[Ranked]) -> list[str]:

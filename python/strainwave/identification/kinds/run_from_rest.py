@@ -22,7 +22,7 @@ from strainwave.identification.reading.roles import Column, ColumnRoles, channel
 from strainwave.identification.results.file_result import Check, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import MAX_KEPT_LISTED, JudgedFit
-from strainwave.identification.results.pictures import pictures_of_channels
+from strainwave.identification.results.pictures import pictures_of_run
 from strainwave.questions import QuestionError
 from strainwave.simulation.run import simulate
 
@@ -67,7 +67,7 @@ class RunFromRest(Kind):
         result = FileResult(
             name, file, ", ".join(path.removeprefix("gear.") for path in free) or "nothing free", estimates,
             (*file.remarks, *_remarks(recording, log, log_fit.fit, kept, known)), (whole,),
-            pictures=pictures_of_channels(fit), held_out=_held_out(log_fit), fit=fit,
+            pictures=pictures_of_run(fit.parts[0].curves()), held_out=_held_out(log_fit), fit=fit,
         )  # fmt: skip
         if whole.failed:
             return result, known

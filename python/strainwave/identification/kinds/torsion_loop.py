@@ -24,11 +24,11 @@ from strainwave.identification.candidates.torsion import (
     held_out_blocks,
     plain_error,
 )
-from strainwave.identification.candidates.torsion.candidate import asymmetry_in_words
+from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE, asymmetry_in_words
 from strainwave.identification.candidates.torsion.losses import LossLoop, loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
-from strainwave.identification.checks.unexplained import explained, judged_shape
+from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, OVER_LOOP, explained, judged_shape
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
@@ -39,10 +39,11 @@ from strainwave.identification.reading.roles import Column, ColumnRoles, first, 
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit
-from strainwave.identification.results.pictures import Picture, curves_of
+from strainwave.identification.results.pictures import Picture
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
-from strainwave.typeset import percent
+from strainwave.statistics.residuals import shape
+from strainwave.typeset import percent, quantity
 
 Array = NDArray[np.float64]
 
@@ -130,13 +131,14 @@ class Torsion(Kind):
         friction_measured = "friction_input" in known.determined
         training = held_out_blocks(len(loop.twist))
         best, *others = fits = fit_loop(loop, gear, training, friction_measured=friction_measured)
+        odd = [each for each in others if not each.is_one_sided]
         in_series = loop.input_ratio is None and _series_stiffness(file.recording["twist"], file.recording["torque"])
         of_set = () if in_series else stiffness_of_loop(file.recording, best.fit, start, name)
         checks = [clipping(file.recording, name), *of_set]
         whole = explained(best.fit, name)
         shared, left = _shared(best, gear, loop, friction_measured), best.fit.residuals[0]
         varies = float(np.std(best.fit.experiment.measured))
-        shaped = judged_shape(left, {"the loop": np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
+        shaped = judged_shape(left, {OVER_LOOP: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
         fit, estimates = fitted.with_set_before(known)
         gain_sigma = _gain_sigma(loop, gear)
@@ -146,10 +148,10 @@ class Torsion(Kind):
             (
                 *file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start),
                 *asymmetry_in_words(fits),
-                *_of_error(gain_sigma, loop), *shaped.remarks,
+                *_of_error(gain_sigma, loop), *shaped.remarks, *_of_richer_model(best, odd, left),
             ),
             (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
-            pictures=(Picture(curves_of(fit), "loop", "torque" + _place(loop)),),
+            pictures=(Picture(fit.curves()[0], "loop", "torque" + _place(loop)),),
             held_out=_held_out(best),
             candidates=tuple((each.name, each.error) for each in (best, *others)), fit=fit,
         )  # fmt: skip
@@ -317,6 +319,20 @@ def _remarks(
             "have been unloaded at the zeros of both axes"
         )
     yield from exceeded(start, Recording({"torque": loop.torque}, {"torque": "N.m"}))
+
+
+def _of_richer_model(best: TorsionCandidate, others: Sequence[TorsionCandidate], left: Array) -> Iterator[str]:
+    """Yield the richer model that a loop shows, if the simpler one that is taken leaves a significant shape."""
+    repeats = shape(left, np.arange(float(len(left))), ordered=True)
+    richer = min((each for each in others if each.error < best.error), key=lambda each: each.error, default=None)
+    if repeats is None or repeats.chance > MAX_CHANCE_OF_SHAPE or richer is None:
+        return
+    yield (
+        f"the residual has a shape along the loop, RMS {quantity(repeats.size, 'N.m')}: {richer.name} predicts better, with "
+        f"{quantity(richer.error, 'N.m')} in place of {quantity(best.error, 'N.m')}. It is not taken, as it gains less than "
+        f"{percent(MIN_ERROR_SHARE)} of the range of the torque. An element of the model that is taken may stand for several; "
+        "--rank compares all models"
+    )
 
 
 def _of_friction(loop: TorsionLoop, best: TorsionCandidate, gear: Any, friction_measured: bool) -> Iterator[str]:

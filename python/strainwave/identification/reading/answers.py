@@ -101,7 +101,7 @@ def _ways_on(
         return [replace(way, given={**way.given, "joint": ALL_JOINTS}, gives="") for way in ways]
     answered |= answer.stated
     try:
-        return [replace(answer, gives=in_words(in_usual_way(read, mapping)))]
+        return [replace(answer, gives=in_words(in_usual_way(read, mapping), answer=answer))]
     except QuestionError as following:
         if following.question == question.question:
             return []
@@ -109,12 +109,13 @@ def _ways_on(
         return [way.after(answer) for way in ways]
 
 
-def in_words(file: Recognised, stated: FileMapping | None = None) -> str:
+def in_words(file: Recognised, stated: FileMapping | None = None, answer: Answer | None = None) -> str:
     """Return the kind of a file, and how large its motions and efforts are.
 
     Args:
         file: as it is read
         stated: channels and units of its columns, by their names in the file, in place of those that it is read with
+        answer: that it is read with; sizes in a unit whose number only a person knows are in that unit
     """
     mapping, recording = stated or FileMapping(), file.recording
     channel_of = {column: channel for channel, column in mapping.columns.items()}
@@ -122,6 +123,10 @@ def in_words(file: Recognised, stated: FileMapping | None = None) -> str:
     for name, column in file.columns.items():
         if CHANNELS[name].measured and CHANNELS[name].quantity not in USUAL_FIRST and name in recording:
             size, channel = float(np.abs(recording[name]).max()), channel_of.get(column, name)
+            if answer is not None and column in answer.numbers:
+                own = file.units[name]
+                sizes.append(f"{channel} to {convert(size, recording.unit(name), own):.3g} {answer.written(column, own)}")
+                continue
             if unit := mapping.units.get(column):
                 size = convert(convert(size, recording.unit(name), file.units[name]), unit, CHANNELS[channel].unit)
             sizes.append(f"{channel} to {size:.3g} {CHANNELS[channel].unit if unit else recording.unit(name)}")

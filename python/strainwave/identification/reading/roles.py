@@ -256,10 +256,12 @@ def side_of_torque(column: Column, sides: set[Side], given: Side | None) -> tupl
     Raises:
         QuestionError: nothing determines it
     """
-    if side := column.channel.side or given:
-        return side, "" if column.channel.side else f"{column.name} is at the {side}, {AS_WAS_GIVEN}"
-    if " of " in (column.unit or ""):
+    if side := column.channel.side:
+        return side, ""
+    if " of " in (column.unit or ""):  # of which `given` is the side of the angles
         return "input", f"{column.name} is a share of a rated torque, which is that of the motor"
+    if given:
+        return given, f"{column.name} is at the {given}, {AS_WAS_GIVEN}"
     if column.robot:
         return "output", f"{column.name} is what robots call the torque of a joint: it is counted at the output"
     if len(sides) == 1:

@@ -31,6 +31,7 @@ from strainwave.identification.results.file_result import (
     FileResult,
 )
 from strainwave.identification.results.gear_so_far import is_of, source_of
+from strainwave.identification.results.measured_range import measured_range
 from strainwave.messages import listed, one_line
 from strainwave.parameters import gear_numbers, plain
 
@@ -379,5 +380,5 @@ def _validation(whole: GearSet, files: Sequence[FileResult], best: FileResult | 
             shares = {name: unknown[f"{SHARE_OF}{name}"] for name in log.regressors}
         yield Validation(
             one_line(each.name), each.recognised.kind, held_out.channel, held_out.unit, error, varies, held_out.error,
-            held_out.zero, zero, delay, shares,
+            held_out.zero, zero, delay, shares, measured_range(each, whole.gear.kinematics.ratio),
         )  # fmt: skip

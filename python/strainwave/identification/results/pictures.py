@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments
 from strainwave.drawing import marks
 from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.experiments.experiment import Experiment
-from strainwave.identification.experiments.friction_table import FrictionTable
-from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.messages import listed, quoted
 from strainwave.statistics.spectrum import mean_power
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
-
-    from strainwave.identification.fitting.fit import Fit, RecordFit
 
 Array = NDArray[np.float64]
 
@@ -47,7 +41,7 @@ class Picture(ComparedByFields):
     """Measured against modelled, to be drawn.
 
     Attributes:
-        curves: the abscissa, the channel measured, and `modelled`, as `curves_of` returns them
+        curves: the abscissa, the channel measured, and `modelled`, as `Fit.curves` returns them
         look: style of the drawing
         label: of the channel in words; its name if not given
         title: of the picture, if a file has several
@@ -74,90 +68,15 @@ class Picture(ComparedByFields):
         return "torque" if self.look == "series" and self.curves.unit(self.curves.names[1]) in UNITS_OF_EFFORT else ""
 
 
-def curves_of(fit: Fit) -> Recording:
-    """Return the first measurement of a fit and the prediction of its model.
-
-    Returns:
-        speed, twist or time; the first channel, under its name; `modelled`, the prediction; `held_out`, 1 where a sample took
-        no part in the fit; and `sigma`, the standard deviation of `modelled` by that of the estimates, if the data determine
-        all of them
-
-    The standard deviation is that of a linear function of the estimates, the root of J C J^T, with J the derivatives of the
-    prediction and C the covariance of the estimates (JCGM 100:2008, eq. 13).
-    """
-    return _curves(fit.parts[0], 0, _sigmas(fit)[0])
+def picture_of(curves: Recording) -> Picture:
+    """Return the picture of a channel of a fit, as `Fit.curves` returns its curves."""
+    look: Look = {"speed": "table", "twist": "loop"}.get(curves.names[0], "series")  # type: ignore[assignment]
+    return Picture(curves, look)
 
 
-def pictures_of(fit: Fit, record: str | None = None) -> tuple[Picture, ...]:
-    """Return a picture of each channel of a record, the first one if no name is given; curves as `curves_of` returns them.
-
-    The standard deviation of the prediction is drawn if the fit is to one record.
-    """
-    part = part_named(fit, record)
-    sigmas = _sigmas(fit) if len(fit.parts) == 1 else np.full(part.predicted.shape, np.inf)
-    look: Look = {"speed": "table", "twist": "loop"}.get(_abscissa(part.experiment)[0], "series")  # type: ignore[assignment]
-    return tuple(Picture(_curves(part, place, sigma), look) for place, sigma in enumerate(sigmas))
-
-
-def pictures_of_channels(fit: Fit) -> tuple[Picture, ...]:
-    """Return a picture over time of each channel of a run."""
-    part = fit.parts[0]
-    unknown = np.full(part.predicted.shape[1], np.inf)
-    return tuple(
-        Picture(_curves(part, place, unknown), title=channel.replace("_", " "))
-        for place, channel in enumerate(part.experiment.channels)
-    )
-
-
-def part_named(fit: Fit, record: str | None) -> RecordFit:
-    """Return the part of a fit by the name of its record, the first one if no name is given.
-
-    Raises:
-        ValueError: no record has that name
-        TypeError: the name is no text
-    """
-    if record is None:
-        return fit.parts[0]
-    names = [part.name for part in fit.parts]
-    if arguments.text("record", record) not in names:
-        raise ValueError(f"no record {quoted(record)}; there are {listed(names)}")
-    return fit.parts[names.index(record)]
-
-
-def _curves(part: RecordFit, place: int, sigma: Array) -> Recording:
-    """Return the curves of one channel; `sigma` is left out if it is not finite."""
-    experiment, channel = part.experiment, part.experiment.channels[place]
-    over, unit, x = _abscissa(experiment)
-    columns = {over: x, channel: experiment.measured[place], "modelled": part.predicted[place]}
-    units = {over: unit, channel: experiment.units[place], "modelled": experiment.units[place], "held_out": "1"}
-    columns["held_out"] = (~part.training).astype(float)
-    if np.isfinite(sigma).all():
-        columns["sigma"], units["sigma"] = sigma, experiment.units[place]
-    return Recording(columns, units)
-
-
-def _abscissa(experiment: Experiment) -> tuple[str, str, Array]:
-    if isinstance(experiment, FrictionTable):
-        return "speed", "rad/s", experiment.speed
-    if isinstance(experiment, TorsionLoop):
-        return "twist", "rad", experiment.twist
-    log: Any = experiment
-    return "time", "s", log.time
-
-
-def _sigmas(fit: Fit) -> Array:
-    """Return the standard deviation of the prediction of the first record, shape (channels, n)."""
-    part, own = fit.parts[0], {each.path: place for place, each in enumerate(fit.estimates)}
-    zeros = [each.name for each in part.experiment.nuisances]
-    numbers = {path: number for number, (path, *_) in enumerate(_core.parameters(part.model))}
-    free = [path for path in own if path in numbers and path not in zeros]
-    nuisances = np.array([fit.estimates[own[name]].value for name in zeros])
-    _, slopes = part.experiment.predict(part.model, [numbers[path] for path in free], nuisances)
-    places = [own[path] for path in (*free, *zeros)]
-    covariance = fit.covariance[np.ix_(places, places)]
-    with np.errstate(invalid="ignore"):  # infinite where the data do not determine an estimate
-        variance: Array = np.einsum("icn,ij,jcn->cn", slopes, covariance, slopes, optimize=True)
-    return np.sqrt(np.clip(variance, 0.0, None))
+def pictures_of_run(channels: Iterable[Recording]) -> tuple[Picture, ...]:
+    """Return a picture over time of each channel of a run, by its curves."""
+    return tuple(Picture(curves, title=curves.names[1].replace("_", " ")) for curves in channels)
 
 
 def draw_picture(figure: Figure | SubFigure, picture: Picture) -> Axes:
@@ -368,14 +287,14 @@ def amplitude_spectra(time: Array, *series: Array) -> tuple[Array, ...]:
     return rate * np.fft.rfftfreq(samples)[1:], *(np.sqrt(2.0 * power[1:]) for power in powers)
 
 
-def spectrum_figure(part: RecordFit, title: str) -> Figure:
+def spectrum_figure(experiment: Experiment, residuals: Array, title: str) -> Figure:
     """Return the figure of each channel, as `Fit.plot_residual_spectrum` describes it."""
-    log: Any = part.experiment
+    log: Any = experiment
     if not hasattr(log, "time"):
         raise ValueError("the record has no time: only a log has a spectrum; `plot` shows the residual of a table or a loop")
     with marks.new_figure(SPECTRUM_HEAD_HEIGHT + SPECTRUM_PANEL_HEIGHT * len(log.channels), title) as figure:
         axes = figure.subplots(len(log.channels), 1, sharex=True, squeeze=False)[:, 0]
-        channels = zip(axes, log.channels, log.units, log.measured, part.residuals, strict=True)
+        channels = zip(axes, log.channels, log.units, log.measured, residuals, strict=True)
         for axis, channel, unit, measured, residual in channels:
             frequency, *spectra = amplitude_spectra(log.time, measured, residual)
             for label, colour, amplitude in zip(("measured", "residual"), ("measured", "model"), spectra, strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isclose
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -30,9 +31,10 @@ Array = NDArray[np.float64]
 
 MAX_APART = 0.05  # between scales that are one: a loss under load is friction, and grows with the load
 MAX_ERROR_FACTOR = 2.0  # of the error that a gear has on its own files: one half of a record predicts the other within 1.7
+MAX_OFF_SAME = 1e-9  # relative difference of how much the channel of one recording varies, read twice: rounding
 MAX_SHARE_LEFT_BY_CHANGES = 0.5  # of the error and of that of the mean, that is left with changes that are the cause
 
-Verdict = Literal["agrees", "differs", "contradicts", "refused"]
+Verdict = Literal["agrees", "differs", "contradicts", "no evidence", "refused"]
 MIN_CHANGE = 0.03  # of a scale [1], and of the zero over what the channel varies by: laws of friction are no better
 MIN_CHANGE_TEXT = f"{100.0 * MIN_CHANGE:g} %"
 MAX_SCALE_SIGMA = 0.5  # standard deviation of a scale [1]; a recording that determines it less well does not determine it
@@ -68,6 +70,7 @@ class Prediction(ComparedByFields, Pictured):
         checks: that of the error; failed if the recording contradicts the gear
         remarks: assumptions and limits, in short sentences
         refused: why the recording cannot be predicted; empty if it can
+        same_as: the file of the saved gear that contains the same recording; empty if none does, or if the gear names no files
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -97,6 +100,7 @@ class Prediction(ComparedByFields, Pictured):
     checks: tuple[Check, ...] = ()
     remarks: tuple[str, ...] = ()
     refused: str = ""
+    same_as: str = ""
 
     @property
     def relative(self) -> float:
@@ -125,10 +129,12 @@ class Prediction(ComparedByFields, Pictured):
 
     @property
     def verdict(self) -> Verdict:
-        """`refused` if it cannot be predicted, `contradicts` if the error exceeds the allowed one, `differs` if only a part
-        changed significantly, else `agrees`."""
+        """`refused` if it cannot be predicted, `contradicts` if the error exceeds the allowed one, `no evidence` if the gear is
+        identified from this recording, `differs` if only a part changed significantly, else `agrees`."""
         if self.refused:
             return "refused"
+        if self.same_as and not self.contradicts:
+            return "no evidence"
         return "contradicts" if self.contradicts else "differs" if self.changed else "agrees"
 
     @property
@@ -212,13 +218,14 @@ def judged(prediction: Prediction, gear_set: GearSet, variance: float) -> Predic
         allowed = MAX_ERROR_FACTOR * float(np.hypot(base, np.sqrt(variance)))
     else:
         allowed = MAX_UNEXPLAINED * prediction.varies
+    same_as = next((each.file for each in own if isclose(each.varies, prediction.varies, rel_tol=MAX_OFF_SAME)), "")
     channel, unit = prediction.channel.replace("_", " "), prediction.unit
     check = Check(
         "error of the prediction", prediction.name, prediction.error, allowed, unit, prediction.error > allowed,
         f"{prediction.gear} leaves {prediction.error:.3g} {unit} of {channel}, and allows {allowed:.3g} {unit}",
         "see what changed; if nothing did, see whether this is the same joint, and columns, units and sides are as before",
     )  # fmt: skip
-    return replace(prediction, allowed=allowed, checks=(*prediction.checks, check))
+    return replace(prediction, allowed=allowed, checks=(*prediction.checks, check), same_as=same_as)
 
 
 # ---- Changes of parts of the gear ------------------------------------------------------------------------------------

@@ -52,13 +52,15 @@ class Core {
   loop(gear, twist) { return this.over("loop", gear, twist)[0]; }
   twist(gear, torque) { return this.over("twist", gear, torque)[0]; }
   friction(gear, speed, angle, load, temperature) { return this.over("friction", gear, [speed, angle, load, temperature], 1, 0)[0]; }
-  /** A verb and its derivatives by numbered parameters of the gear, a row each. */
-  slopes(verb, gear, points, places) {
+  /** A verb and its derivatives by numbered parameters of the gear, a row each, then `more` rows of its own. */
+  slopes(verb, gear, points, places, more = 0) {
     this.ints("parameters", places.length).set(places);
     const [values] = this.over(verb, gear, points, 1, places.length), n = values.length;
     if (this.reason) throw new Error(this.reason);
-    return { values, slopes: places.map((_, p) => this.doubles("slopes", (p + 1) * n).slice(p * n)) };
+    return { values, slopes: Array.from({ length: places.length + more }, (_, p) => this.doubles("slopes", (p + 1) * n).slice(p * n)) };
   }
+  noise(gear, angle) { return this.over("noise", gear, angle)[0]; }
+  ratio(gear) { return this.over("ratio", gear, [0])[0][0]; }
   error(gear, angle) { return this.over("error", gear, angle, 2); }
   spring(gear, twist) { return this.over("spring", gear, twist, 2); }
   /** The fastest rate of a drive [rad/s], and first instant, period and delay of its controller [s]. */

@@ -18,8 +18,12 @@ const HISTORIES = {
 /** Evenly spaced numbers from one to the other, both included. */
 const between = (from, to, n) => Float64Array.from({ length: n }, (_, i) => from + ((to - from) * i) / (n - 1));
 
+const PLACES = ["input", "mesh", "output", "sum at the input"]; // of friction
+
+/** The parameters of a drive taken apart: of its gear, of the whole, and of the gear with the friction of another part at the input. */
 function setsOf(schema, drive) {
-  return { gear: flattened(schema, "Gear", drive.gear), drive: flattened(schema, "Drive", drive) };
+  const ofGear = (changes) => flattened(schema, "Gear", { ...drive.gear, ...changes });
+  return { gear: ofGear({}), drive: flattened(schema, "Drive", drive), sensors: drive.sensors, gearWithInputFriction: (part) => ofGear({ friction_input: drive.gear[part] }) };
 }
 
 /** Twist [rad] and torque [N.m] along the chosen travel, and the first point of the last two stretches. */
@@ -62,15 +66,29 @@ function slopesOfLoop({ twist, torque, last }) {
   return { x, y };
 }
 
-function frictionAt(core, sets, speeds, angles, view) {
+/** The part whose friction a place has; none for the sum. */
+const frictionPart = (place) => ({ input: "friction_input", mesh: "friction_mesh", output: "friction_output" })[place];
+/** Turns of the input for one of the shaft of a place: mesh and output turn with the output. */
+const turnsAt = (core, sets, place) => (place === "mesh" || place === "output" ? Math.abs(core.ratio(sets.gear)) : 1);
+
+/** Steady friction [N.m] of a part over speeds [rad/s] and angles [rad] of its own shaft, under a load [N.m] there. */
+function frictionOf(core, sets, part, speeds, angles, load, temperature) {
   const filled = (value) => new Float64Array(speeds.length).fill(value);
-  return core.friction(sets.gear, speeds, angles, filled(view.load), filled(view.temperature));
+  return core.friction(sets.gearWithInputFriction(part), speeds, angles, filled(load), filled(temperature));
+}
+/** Steady friction [N.m] at the place of a view, over speeds [rad/s] and angles [rad] of its shaft. The load is that of the input. */
+function frictionAt(core, sets, speeds, angles, { place, load, temperature }) {
+  const part = frictionPart(place), ratio = core.ratio(sets.gear), referred = (values) => Float64Array.from(values, (value) => value / ratio);
+  if (part) return frictionOf(core, sets, part, speeds, angles, load * turnsAt(core, sets, place), temperature);
+  const [input, mesh, output] = [frictionOf(core, sets, "friction_input", speeds, angles, load, temperature),
+    ...["friction_mesh", "friction_output"].map((each) => frictionOf(core, sets, each, referred(speeds), referred(angles), load * ratio, temperature))];
+  return input.map((torque, i) => torque + (mesh[i] + output[i]) / ratio);
 }
 /** Steady friction [N.m] over speed [rad/s]; a gap at rest, where a set-valued law jumps. */
 function frictionOverSpeed(core, sets, view) {
-  const half = (FRICTION_POINTS - 1) / 2, speed = new Float64Array(FRICTION_POINTS);
+  const half = (FRICTION_POINTS - 1) / 2, speed = new Float64Array(FRICTION_POINTS), maxSpeed = view.maxSpeed / turnsAt(core, sets, view.place);
   for (let i = 1; i <= half; i++) { // denser near rest, where friction varies most
-    const at = view.maxSpeed * (i / half) ** 2;
+    const at = maxSpeed * (i / half) ** 2;
     speed[half + i] = at;
     speed[half - i] = -at;
   }
@@ -78,16 +96,24 @@ function frictionOverSpeed(core, sets, view) {
   torque[half] = NaN;
   return { x: speed, y: torque };
 }
-/** Steady friction [N.m] over one turn of the input [rad] at a speed. */
+/** Steady friction [N.m] over one turn [rad] of the shaft of its place, at the speed of a view. */
 function frictionOverAngle(core, sets, view) {
-  const angle = between(0, 2 * Math.PI, FRICTION_POINTS);
-  return { x: angle, y: frictionAt(core, sets, new Float64Array(FRICTION_POINTS).fill(view.speed), angle, view) };
+  const angle = between(0, 2 * Math.PI, FRICTION_POINTS), speed = view.speed / turnsAt(core, sets, view.place);
+  return { x: angle, y: frictionAt(core, sets, new Float64Array(FRICTION_POINTS).fill(speed), angle, view) };
 }
+/** Steady friction [N.m] at speed and angle of a view. */
+const frictionAtSpeed = (core, sets, view) => frictionAt(core, sets, [view.speed / turnsAt(core, sets, view.place)], [view.angle], view)[0];
 
-/** Kinematic error [rad] over one turn of the input [rad]. */
+/** Kinematic error [rad] over one turn of the input [rad], at rest without load: `y` is the sum of the repeating and random part. */
 function errorOverTurn(core, sets) {
-  const angle = between(0, 2 * Math.PI, TURN_POINTS + 1);
-  return { x: angle, y: core.error(sets.gear, angle)[0] };
+  const angle = between(0, 2 * Math.PI, TURN_POINTS + 1), [repeating] = core.error(sets.gear, angle), random = core.noise(sets.gear, angle);
+  return { x: angle, y: repeating.map((value, i) => value + random[i]), repeating, random };
+}
+/** Root mean square of the noise of a sensor, in the unit of what it measures. */
+const noiseOf = ({ model, law, amplitude }) => Math.hypot(model === "noisy" ? amplitude : 0, law ? noiseOf(law) : 0);
+/** That of the kinematic error [rad] as the sensors of both angles measure it. */
+function sensorNoise(core, sets) {
+  return Math.hypot(noiseOf(sets.sensors.output_angle), noiseOf(sets.sensors.input_angle) / core.ratio(sets.gear));
 }
 const COSINES = Float64Array.from({ length: TURN_POINTS }, (_, i) => Math.cos((2 * Math.PI * i) / TURN_POINTS));
 

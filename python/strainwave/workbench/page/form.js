@@ -5,8 +5,12 @@ const DIGITS = 7, MAX_SHOWN = 11; // of a number in its field, which is that wid
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
 
-/** The number of a field; NaN if it is empty or has none. */
-const numberOf = (text) => (text.trim() ? Number(text.trim().replace(",", ".")) : NaN);
+/** The number of a field in SI: in the unit shown, whose factor is given, or in one that is written behind it; NaN if there is none. */
+function numberOf(text, factor, symbols, unit) {
+  const [, digits = "", written = ""] = /^\s*([^\sa-zA-Z°]+(?:[eE][+-]?\d+)?)\s*(.*?)\s*$/.exec(text) ?? [];
+  const number = digits ? Number(digits.replace(",", ".")) : NaN;
+  try { return number * (written ? factorBetween(symbols, written.replaceAll("·", ".").replace("°", "deg"), unit || "1") : factor); } catch { return NaN; }
+}
 
 function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
@@ -24,9 +28,9 @@ const select = (options, value, properties = {}) => {
 };
 
 class Form {
-  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `sourceOf(path)` its source. */
-  constructor(root, schema, unitOf, get, set, sourceOf) {
-    Object.assign(this, { root, schema, unitOf, get, set, sourceOf, rows: new Map(), open: new Set(), used: new Set() });
+  /** `get()` returns the drive; `set(path, value, done)` changes it, `done` if the change is complete; `entryOf(path)` the entry of a number; `explain(row)` draws its picture. */
+  constructor(root, schema, unitOf, get, set, entryOf, explain) {
+    Object.assign(this, { root, schema, unitOf, get, set, entryOf, explain, rows: new Map(), open: new Set(), used: new Set() });
   }
   /** Anew: a law, a length or a unit is another. */
   build() {
@@ -99,9 +103,10 @@ class Form {
     const slider = element("input", { type: "range", min: -100, max: 100, value: 0, step: 1, tabIndex: -1, "aria-label": `change ${label}` });
     const effect = element("span", { className: "effect" });
     const doc = element("div", { className: "doc", id: `doc-${key}` }, this.limits(field, text, factor));
-    const mark = element("small", { className: "mark" }), source = element("div", { className: "doc" });
-    const made = element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text), " ", mark), input, slider, effect, doc, source);
-    const row = { field, path, input, slider, effect, factor, mark, source, made };
+    const mark = element("small", { className: "mark" }), source = element("div", { className: "doc" }), picture = element("div", { className: "doc picture" });
+    const made = element("div", { className: "row" }, element("label", { htmlFor: input.id }, label, " ", element("small", {}, text), " ", mark), input, slider, effect, doc, source, picture);
+    const row = { label: `${words(String(path.at(typeof path.at(-1) === "number" ? -3 : -2)))} ${label}`, field, path, input, slider, effect, factor, mark, source, picture, made };
+    made.addEventListener("focusin", () => this.explain(row));
     const put = (value, done) => {
       const wrong = problemOf(field, value);
       input.classList.toggle("wrong", Boolean(wrong));
@@ -110,7 +115,7 @@ class Form {
       if (!wrong) this.set(path, value, done);
       return !wrong;
     };
-    input.onchange = () => { if (put(numberOf(input.value) * factor, true)) this.refresh(row); };
+    input.onchange = () => { if (put(numberOf(input.value, factor, this.schema.symbols, field.unit), true)) this.refresh(row); };
     input.onkeydown = (event) => {
       if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
       event.preventDefault();
@@ -152,11 +157,17 @@ class Form {
     this.showSource(row);
   }
   showSource({ path, mark, source, made, factor }) {
-    const { source: text, sigma } = this.sourceOf(path);
-    mark.textContent = sigma !== undefined ? `identified ± ${shortText(sigma / factor, 2)}` : text.startsWith("assumed") ? "assumed" : "";
-    made.title = source.textContent = `Source: ${text}`;
+    const [text, spread, sigma] = this.entryOf(path), deviation = sigma !== null && shortText(sigma / factor, 2);
+    mark.textContent = deviation && text.startsWith("identified") ? `identified ± ${deviation}` : text.startsWith("assumed") ? "assumed" : "";
+    const more = [spread !== null && `single gears scatter by ± ${shortText(100 * spread, 2)} %`, deviation && `standard deviation ${deviation}`].filter(Boolean);
+    made.title = source.textContent = [`Source: ${text}`, ...more].join("; ");
   }
-  refreshAll() { for (const row of this.rows.values()) if (row.input === document.activeElement) this.showSource(row); else this.refresh(row); }
+  refreshAll() {
+    for (const row of this.rows.values()) {
+      if (row.input === document.activeElement) this.showSource(row); else this.refresh(row);
+      if (row.made.contains(document.activeElement)) this.explain(row);
+    }
+  }
 }
 
 /** Scale of a slider whose number is zero: the default of its field, else an angle of a turn, else one. */

@@ -1,4 +1,4 @@
-// Parameters of a drive as nested objects, in the form of a gear file: taken apart for the core, written as gear.toml and Python.
+// Parameters of a drive as nested objects, in the form of a gear file: taken apart for the core, and written as Python.
 // `schema` is what strainwave/workbench/schema.py makes of the models; no model or parameter is named here.
 
 const MAX_FRAGMENT = 60000; // characters of a permalink
@@ -102,45 +102,7 @@ function sameValues(one, other) {
   return JSON.stringify(one) === JSON.stringify(other);
 }
 
-// ---- Text of a gear --------------------------------------------------------------------------------------------------
-
-/** A number as Python and TOML write it: a float has a point or an exponent. */
-function floatText(value) {
-  const text = String(value);
-  return /[.e]/.test(text) ? text : `${text}.0`;
-}
-const numberText = (field, value) => (field.kind === "whole" ? String(value) : floatText(value));
-
-/** The lines of gear.toml. `sourceOf(path)` is the source of a number or sequence, as "gear.stiffness.k1". */
-function gearToml(schema, name, drive, families, sourceOf) {
-  const lines = [`name = ${JSON.stringify(name)}`];
-  const table = (header, id, chosen, values, path) => {
-    lines.push("", `[${header}]`);
-    if (chosen) lines.push(`model = ${JSON.stringify(values.model)}`);
-    const inner = [];
-    for (const field of schema.models[id].fields) {
-      const value = values[field.name], place = `${path}.${field.name}`, unit = JSON.stringify(field.unit);
-      if (field.kind === "part") inner.push([field, value, place]);
-      else if (field.kind === "choice") lines.push(`${field.name} = ${JSON.stringify(value)}`);
-      else if (field.kind === "sequence" && !value.length) lines.push(`${field.name} = []`);
-      else {
-        const written = field.kind === "sequence" ? `[${value.map(floatText).join(", ")}]` : numberText(field, value);
-        lines.push(`${field.name} = { value = ${written}, unit = ${unit}, source = ${JSON.stringify(sourceOf(place))} }`);
-      }
-    }
-    for (const [field, value, place] of inner) table(`${header}.${field.name}`, modelOf(schema, field, value), field.chosen, value, place);
-  };
-  const gear = schema.models.Gear.fields;
-  for (const field of gear)
-    if (field.kind === "part") table(field.name, modelOf(schema, field, drive.gear[field.name]), field.chosen, drive.gear[field.name], `gear.${field.name}`);
-  lines.push("", "[gear]");
-  for (const field of gear)
-    if (field.kind !== "part")
-      lines.push(`${field.name} = { value = ${floatText(drive.gear[field.name])}, unit = ${JSON.stringify(field.unit)}, source = ${JSON.stringify(sourceOf(`gear.${field.name}`))} }`);
-  for (const field of schema.models.Drive.fields)
-    if (families.includes(field.name)) table(field.name, modelOf(schema, field, drive[field.name]), field.chosen, drive[field.name], field.name);
-  return `${lines.join("\n")}\n`;
-}
+// ---- Python --------------------------------------------------------------------------------------------------------
 
 /** A model as a Python expression; parts and numbers that have their default are left out. `texts` replace members. */
 function pythonOf(schema, id, values, indent = "", texts = {}) {
@@ -174,10 +136,12 @@ async function through(bytes, stream, limit) {
 const toBase64 = (bytes) => btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
 const fromBase64 = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 
-/** Any data as the fragment of a link: JSON, deflated, base64url. */
+/** Any data as the fragment of a link: JSON, deflated, base64url; null if that is longer than a link may be. */
 async function toFragment(data) {
-  const bytes = await through(new TextEncoder().encode(JSON.stringify(data)), new CompressionStream("deflate-raw"), MAX_INFLATED);
-  return toBase64(bytes).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  const plain = new TextEncoder().encode(JSON.stringify(data));
+  if (plain.length > MAX_INFLATED) return null;
+  const text = toBase64(await through(plain, new CompressionStream("deflate-raw"), 2 * MAX_INFLATED)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return text.length > MAX_FRAGMENT ? null : text;
 }
 async function fromFragment(text) {
   if (text.length > MAX_FRAGMENT || !/^[\w-]*$/.test(text)) throw new Error("the link is too long or not whole");

@@ -14,6 +14,7 @@ from strainwave.identification.reading.mapping import FileMapping
 from strainwave.statistics.linear_fit import solved
 
 from tests.evidence import arms
+from tests.support.samples import sample
 
 Array = NDArray[np.float64]
 ACROSS = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])  # a quarter of a turn about x
@@ -89,7 +90,7 @@ def test_angles_of_other_joints_are_named_where_no_name_tells_them(tmp_path: Pat
 
 
 @pytest.mark.slow("identification")
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", range(1, 1 + sample(1, 2)))
 def test_twenty_seconds_of_an_arm_are_predicted_better_than_with_a_model_of_it(seed: int, tmp_path: Path) -> None:
     joint = arms.Joint(ripple={2.0: 0.006, 4.0: 0.002})
     recorder = arms.Recorder(rate=95.0, jitter=1e-3, step=1e-4, seed=seed)

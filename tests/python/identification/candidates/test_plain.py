@@ -8,7 +8,7 @@ import strainwave as sw
 from hypothesis import given, settings, strategies as st
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.candidates.plain import NO_ROTOR, fit_plain, gravity_sigma, one_speed, torque_place
-from strainwave.identification.experiments.motion_log import MotionLog
+from strainwave.identification.experiments.motion_log import MotionLog, needed_torque
 from strainwave.identification.reading.mapping import FileMapping
 
 from tests.evidence.drawn import friction_log
@@ -121,6 +121,53 @@ def test_gravity_is_as_uncertain_as_a_drift_that_resembles_it() -> None:
     log = MotionLog.of(sw.Recording(columns, {"time": "s", "output_angle": "rad", "input_torque": "N.m"}), drive())
     assert fit_plain(log, drive()).gravity > 0.1
     assert fit_plain(log, drive()).gravity < 2.0 * gravity_sigma(log, drive())
+
+
+GRAVITY = 30.0  # N.m at the output
+
+
+def wound_up(*channels: str, sense: float = -1.0) -> MotionLog:
+    """Return a slow log of a load that hangs on a spring of 10 000 N.m/rad: it turns less than a rigid gear would turn it."""
+    output = 0.9 * np.sin(1.3 * TIME) + 0.4 * np.sin(0.7 * TIME)
+    load = GRAVITY * np.sin(output) - 1.2 * (1.521 * np.sin(1.3 * TIME) + 0.196 * np.sin(0.7 * TIME))
+    angle = -RATIO * (output + load / 1e4)
+    torque = -load / RATIO + 3e-4 * np.gradient(angle, TIME)
+    columns = {"input_angle": angle, "output_angle": sense * -output, "input_torque": torque}
+    units = {"time": "s", "input_angle": "rad", "output_angle": "rad", "input_torque": "N.m"}
+    kept = {name: columns[name] for name in (*channels, "input_torque")}
+    return MotionLog.of(sw.Recording({"time": TIME, **kept}, {name: units[name] for name in ("time", *kept)}), drive())
+
+
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_a_load_hangs_at_the_measured_angle_of_the_output(sense: float) -> None:
+    both = wound_up("input_angle", "output_angle", sense=sense)
+    assert fit_plain(both, drive()).gravity == pytest.approx(GRAVITY, rel=2e-4)
+    assert gravity_sigma(both, drive()) < 1e-3 * GRAVITY
+
+
+def test_gravity_by_the_input_alone_is_as_uncertain_as_the_wind_up_makes_it() -> None:
+    by_input, by_output = wound_up("input_angle"), wound_up("output_angle")
+    off = fit_plain(by_input, drive()).gravity - GRAVITY
+    assert abs(off) > 1e-3 * GRAVITY  # a rigid gear is wrong by that
+    assert abs(off) < 2.0 * gravity_sigma(by_input, drive())
+    assert fit_plain(by_output, drive()).gravity == pytest.approx(GRAVITY, rel=2e-4)
+    assert gravity_sigma(by_output, drive()) < 0.5 * gravity_sigma(by_input, drive())
+
+
+def test_derivatives_by_gravity_contain_the_wind_up() -> None:
+    log, paths = wound_up("input_angle", "output_angle"), ("load.gravity_torque", "load.gravity_phase", "load.inertia")
+    load = sw.loads.Pendulum(inertia=1.2, gravity_torque=GRAVITY, gravity_phase=0.3)
+    there = drive().replace(load=load)
+    _, slopes = needed_torque(there, log.motion, log.extra, paths)
+    for path, slope in zip(paths, slopes, strict=True):
+        step = 1e-4 * abs(getattr(load, path.removeprefix("load.")))
+        ends = [
+            needed_torque(there.replace({path: getattr(load, path.removeprefix("load.")) + way * step}), log.motion, log.extra)[
+                0
+            ]
+            for way in (-1.0, 1.0)
+        ]
+        np.testing.assert_allclose(slope, (ends[1] - ends[0]) / (2.0 * step), atol=1e-7)
 
 
 @pytest.mark.slow("identification")

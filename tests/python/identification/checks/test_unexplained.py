@@ -13,9 +13,11 @@ from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.unexplained import (
     MAX_SHARE_OF_SHAPE,
+    OVER_SPEED,
+    OVER_TURN,
     SHAPE_OF_RESIDUALS,
     causes,
-    has_small_shape,
+    has_shape,
     judged_shape,
     left,
 )
@@ -132,7 +134,7 @@ def test_a_kept_parameter_that_the_run_contradicts_is_named() -> None:
 
 def judged(size: float):  # type: ignore[no-untyped-def]
     wave = size * np.sqrt(2.0) * np.sin(ANGLE)
-    return judged_shape(NOISE + wave, {"the turn": np.mod(ANGLE, 2.0 * np.pi), "the speed": np.cos(ANGLE)}, 1.0, "A", "log.csv")
+    return judged_shape(NOISE + wave, {OVER_TURN: np.mod(ANGLE, 2.0 * np.pi), OVER_SPEED: np.cos(ANGLE)}, 1.0, "A", "log.csv")
 
 
 def test_white_residuals_pass_without_a_remark() -> None:
@@ -142,8 +144,8 @@ def test_white_residuals_pass_without_a_remark() -> None:
 
 def test_a_small_shape_is_a_remark_with_its_size() -> None:
     (check,), (remark,) = judged(0.05)
-    assert has_small_shape(check)
-    assert remark.startswith("the residual has a shape over the turn: RMS ")
+    assert has_shape(check)
+    assert remark.startswith("the residual has a shape over the turn of the input: RMS ")
     assert remark.endswith(f"{100.0 * check.value:.2g} % of the signal")
     assert check.value == pytest.approx(0.05, abs=0.005)
 
@@ -156,8 +158,50 @@ def test_a_large_shape_fails() -> None:
     assert not remarks
 
 
+@pytest.mark.parametrize("numbers", [[], ["load.gravity_torque"]])
+def test_a_large_shape_fails_if_it_moves_a_number_beyond_its_uncertainty(numbers: list[str]) -> None:
+    asked = list[str]()
+
+    def biased(over: str) -> list[str]:
+        asked.append(over)
+        return numbers
+
+    wave = 0.35 * np.sqrt(2.0) * np.sin(ANGLE)
+    (check,), remarks = judged_shape(NOISE + wave, {OVER_TURN: np.mod(ANGLE, 2.0 * np.pi)}, 1.0, "A", "log.csv", biased=biased)
+    assert asked == [OVER_TURN]
+    assert check.failed == bool(numbers)
+    (words,) = remarks or (check.message,)
+    assert "the model lacks a ripple over the turn of the input" in words
+    assert ("moves load.gravity_torque by more than the uncertainty" in words) == bool(numbers)
+    assert has_shape(check) != bool(numbers)
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("size", [0.0, 2.0, 8.0])
+def test_gravity_is_as_uncertain_as_a_second_load_that_the_model_lacks(size: float) -> None:
+    """A cable pulls at twice the angle of the output: over a part of a turn a model without it takes it for gravity."""
+    time = np.arange(0.0, 30.0, 0.01)
+    angle = 0.5 + 0.7 * np.sin(0.9 * time) + 0.2 * np.sin(2.3 * time)
+    speed, rise = (np.gradient(angle, time), np.gradient(np.gradient(angle, time), time))
+    torque = 1.2 * rise + 6.0 * np.sin(angle) + 3.0 * np.sign(speed) + 2.0 * speed + size * np.cos(2.0 * angle)
+    torque += 0.1 * np.random.default_rng(0).standard_normal(len(time))
+    log = sw.Recording(
+        {"time": time, "output_angle": angle, "joint_torque": torque},
+        {"time": "s", "output_angle": "rad", "joint_torque": "N.m"},
+    )
+    (file,) = sw.identify("csg-20-100", {"log": log}, accept=True).files
+    estimates = {each.path: each for each in file.estimates}
+    gravity = estimates["load.gravity_torque"]
+    assert abs(gravity.value - 6.0) < 2.0 * gravity.sigma
+    assert bool(gravity.why) == (size > 0.0)
+    assert bool(estimates["load.gravity_phase"].why) == (size > 0.0)
+    assert any("has a shape over the angle of the output" in each for each in file.remarks) == (size > 0.0)
+    for path, truth in {"gear.friction_input.coulomb": 0.03, "gear.friction_input.viscous": 2e-4}.items():
+        assert abs(estimates[path].value - truth) < 2.0 * estimates[path].sigma < 0.3 * truth
+
+
 def test_few_samples_have_no_check() -> None:
-    assert judged_shape(NOISE[:20], {"the speed": ANGLE[:20]}, 1.0, "A", "log.csv", ordered=True) == ((), ())
+    assert judged_shape(NOISE[:20], {OVER_SPEED: ANGLE[:20]}, 1.0, "A", "log.csv", ordered=True) == ((), ())
 
 
 @pytest.mark.slow("identification")

@@ -335,3 +335,16 @@ def test_a_loop_inside_the_stiction_of_a_table_gives_the_stiffness_and_no_breaka
     sliding: Any = found.gear_set.gear.friction_input
     assert sliding.breakaway == pytest.approx(COULOMB, rel=0.05)
     assert sliding.coulomb == pytest.approx(COULOMB, rel=0.05)
+
+
+def test_a_zero_of_the_torque_is_no_asymmetry_of_friction() -> None:
+    speed = np.geomspace(2.0, 230.0, 10)
+    torque = np.concatenate([0.055 + 3.5e-4 * speed, -0.055 - 3.5e-4 * speed])
+    torque += 0.02 + 3e-4 * np.random.default_rng(5).standard_normal(20)  # an offset of the sensor of 20 mN.m
+    table = sw.Recording({"speed": np.concatenate([speed, -speed]), "torque": torque}, {"speed": "rad/s", "torque": "N.m"})
+    (file,) = sw.identify(START, {"friction": table}).files
+    estimates = {each.path.rpartition(".")[2]: each for each in file.estimates}
+    assert estimates["coulomb"].value == pytest.approx(0.055, abs=3.0 * estimates["coulomb"].sigma)
+    asymmetry = estimates["dry_asymmetry"]
+    assert asymmetry.state == "identified in combination"
+    assert "a zero of the torque looks the same: both make 19.89" in asymmetry.why

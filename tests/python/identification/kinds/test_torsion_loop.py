@@ -49,3 +49,20 @@ def test_stiffness_of_a_loop_at_the_input_contains_the_error_of_the_gear() -> No
         off.append((k1.value - GEAR.stiffness.k1) / k1.sigma)
     assert np.max(np.abs(off)) < 2.0
     assert 0.5 < np.sqrt(np.mean(np.square(off))) < 1.5
+
+
+@pytest.mark.parametrize("breakaway", [[0.5, 1.2], [1.7]])
+def test_elements_that_one_element_stands_for_leave_a_shape_and_a_remark(breakaway: list[float]) -> None:
+    """The gain of a second element is below a thousandth of the range of the torque, and it is not fitted."""
+    half = np.linspace(-2.1e-3, 2.1e-3, 120)
+    twist = np.concatenate([half, half[::-1], half, half[::-1]])
+    spring = sw.stiffness.Cubic(a1=1.6e4, a3=3e9)
+    slips = sw.hysteresis.MaxwellSlip(stiffness=[6e3, 4e3][: len(breakaway)], breakaway=breakaway)
+    path = np.concatenate([np.linspace(0.0, half[0], 50), twist])
+    torque = (np.asarray(spring.torque(path)) + np.asarray(slips.trace(path)))[50:]
+    torque += 0.06 * np.random.default_rng(0).standard_normal(len(torque))
+    loop = sw.Recording({"twist": twist, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+    (file,) = sw.identify("csg-20-100", {"torsion": loop}).files
+    assert file.model == "cubic spring with 1 Maxwell element"
+    remark = "cubic spring with 2 Maxwell elements predicts better"
+    assert any(remark in each for each in file.remarks) == (len(breakaway) == 2)

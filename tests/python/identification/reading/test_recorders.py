@@ -63,6 +63,8 @@ def test_a_scope_of_twincat_with_one_time(tmp_path: Path) -> None:
         recognise(path)
     options = "--unit 'Motor position=counts/1048576' --unit 'Axis1.ActTorque=permille of NUMBER N.m'"
     assert options_of(asked.value) == [options]
+    (answer,) = asked.value.answers
+    assert answer.gives.endswith(f"input_torque to {np.abs(share).max():.3g} permille of NUMBER N.m")  # of no invented value
     units = {"Motor position": "counts/1048576", "Axis1.ActTorque": "permille of 0.4 N.m"}
     found = recognise(path, FileMapping(units=units))
     assert found.recording["input_angle"] == pytest.approx(RATIO * ANGLE, abs=1e-5)
@@ -504,3 +506,11 @@ def test_a_message_of_many_columns_is_short(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="more") as refused:
         recognise(path, FileMapping(kind="encoders"))
     assert len(str(refused.value)) < 1000
+
+
+def test_a_share_of_a_rated_torque_is_that_of_the_motor_whatever_the_side_of_the_angle(tmp_path: Path) -> None:
+    columns = [TIME, np.degrees(ANGLE), np.round(100.0 * TORQUE / RATIO / 0.4)]
+    path = written(tmp_path / "log.csv", "time [s],ActualPosition [deg],ActualTorque [%]\n", columns, ",")
+    found = recognise(path, FileMapping(side="output", units={"ActualTorque": "% of 0.4 N.m"}))
+    assert found.recording["output_angle"] == pytest.approx(ANGLE, abs=1e-4)
+    assert found.recording["input_torque"] == pytest.approx(TORQUE / RATIO, abs=2.1e-3)

@@ -15,7 +15,7 @@ from tests.evidence import arms
 
 @pytest.fixture(scope="module")
 def rows() -> np.ndarray:
-    seen = arms.Recorder(rate=200.0)(arms.run((arms.Joint(),) * 3, arms.fourier(10.0, (1,), seed=1)))
+    seen = arms.Recorder(rate=100.0)(arms.run((arms.Joint(),) * 3, arms.fourier(10.0, (1,), seed=1)))
     return np.column_stack([seen["time"], seen["q"][1], seen["dq"][1], seen["motor_torque"][1]])
 
 

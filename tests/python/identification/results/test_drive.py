@@ -26,7 +26,7 @@ def mapping(**constants: float) -> sw.FileMapping:
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Logs of one joint of an arm, and of the same joint with another load: the arm is stretched out."""
     place = tmp_path_factory.mktemp("joint")
-    record = Recorder(rate=250.0)
+    record = Recorder(rate=125.0)
     rtde(place / "joint.csv", record(run((JOINT,) * 3, fourier(30.0, (1,), 2))))
     stretched = fourier(30.0, (1,), 3)
     stretched[2] = 0.0
@@ -142,7 +142,7 @@ def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> 
 
 @pytest.mark.slow("identification")
 def test_a_measured_torque_gives_a_motor_of_torque(folder: Path) -> None:
-    recorded = Recorder(rate=250.0)(run((replace(JOINT),) * 3, fourier(30.0, (1,), 2)))
+    recorded = Recorder(rate=125.0)(run((replace(JOINT),) * 3, fourier(30.0, (1,), 2)))
     columns = {"time": recorded["time"], "output_angle": recorded["q"][1], "joint_torque": recorded["motor_torque"][1]}
     log = sw.Recording(columns, {"time": "s", "output_angle": "rad", "joint_torque": "N.m"})
     found = sw.identify(START, {"log": log}, mapping=sw.FileMapping(constants={"ratio": 100.0})).gear_set

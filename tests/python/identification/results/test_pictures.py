@@ -6,7 +6,7 @@ import matplotlib.figure
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.results.pictures import Picture, amplitude_spectra, curves_of, draw_measured, table_points
+from strainwave.identification.results.pictures import Picture, amplitude_spectra, draw_measured, table_points
 
 GEAR = sw.load("hfuc-25-100")
 SPEED = np.linspace(2.0, 200.0, 30)
@@ -152,7 +152,7 @@ def noisy_table(seed: int) -> sw.Recording:
 
 def test_a_line_is_as_uncertain_as_its_numbers_and_their_covariance_make_it() -> None:
     fit = sw.fit(COULOMB_GEAR, noisy_table(1), FREE)
-    curves = curves_of(fit)
+    curves = fit.curves()[0]
     by_hand = np.stack([np.sign(BOTH_WAYS), BOTH_WAYS], axis=1)
     variance = np.array([row @ fit.covariance @ row for row in by_hand])
     np.testing.assert_allclose(curves["sigma"], np.sqrt(variance), rtol=1e-9)
@@ -163,7 +163,7 @@ def test_a_line_is_as_uncertain_as_its_numbers_and_their_covariance_make_it() ->
 
 
 def test_what_is_modelled_scatters_as_much_as_it_says_when_the_table_is_measured_again() -> None:
-    every = [curves_of(sw.fit(COULOMB_GEAR, noisy_table(seed), FREE)) for seed in range(60)]
+    every = [sw.fit(COULOMB_GEAR, noisy_table(seed), FREE).curves()[0] for seed in range(60)]
     scatter = np.std([each["modelled"] for each in every], axis=0)
     told = np.sqrt(np.mean([each["sigma"] ** 2 for each in every], axis=0))
     assert np.all(scatter < 1.5 * told)
@@ -174,16 +174,16 @@ def test_a_number_that_follows_another_moves_what_is_predicted_with_it() -> None
     ties = {"friction_input.viscous": ("friction_input.coulomb", 6e-3)}
     fit = sw.fit(COULOMB_GEAR, noisy_table(2), FREE[:1], ties=ties)
     sigma = fit.estimates[0].sigma * np.abs(np.sign(BOTH_WAYS) + 6e-3 * BOTH_WAYS)
-    np.testing.assert_allclose(curves_of(fit)["sigma"], sigma, rtol=1e-9)
+    np.testing.assert_allclose(fit.curves()[0]["sigma"], sigma, rtol=1e-9)
 
 
 def test_what_the_data_do_not_tell_leaves_no_band() -> None:
     still = COULOMB_GEAR.replace(friction_output=sw.friction.Coulomb(coulomb=1.0, breakaway=1.0, viscous=0.0))
     fit = sw.fit(still, noisy_table(3), [*FREE, "friction_output.viscous"])
-    assert "sigma" not in curves_of(fit).names
+    assert "sigma" not in fit.curves()[0].names
 
 
 def test_what_took_no_part_is_marked() -> None:
     training = BOTH_WAYS > 0.0
-    marked = curves_of(sw.fit(COULOMB_GEAR, noisy_table(4), FREE, training=training))["held_out"]
+    marked = sw.fit(COULOMB_GEAR, noisy_table(4), FREE, training=training).curves()[0]["held_out"]
     np.testing.assert_array_equal(marked == 0.0, training)

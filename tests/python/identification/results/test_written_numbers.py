@@ -12,6 +12,7 @@ from strainwave.identification.fitting.unknowns import LIMIT_TOLERANCE
 from strainwave.parameters import every
 
 from tests.evidence.drawn.written_numbers import KINDS, of_kind
+from tests.support.samples import sample
 
 FRICTION = (
     sw.friction.Coulomb(coulomb=0.05, breakaway=0.06, viscous=3e-4),
@@ -73,5 +74,6 @@ def test_no_limit_and_no_rounding_is_written(kind: str, seed: int) -> None:
 @pytest.mark.slow("identification")
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_limit_and_no_rounding_is_written_of_any_kind(kind: str) -> None:
-    wrong = [found.message for seed in range(25) if (found := of_kind(kind, seed)).verdict == "wrong"]
+    few = 2 if "log" in kind else 8  # a log takes up to 1 s
+    wrong = [found.message for seed in range(sample(few, 25)) if (found := of_kind(kind, seed)).verdict == "wrong"]
     assert not wrong

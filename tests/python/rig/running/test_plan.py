@@ -14,7 +14,7 @@ from hypothesis import assume, given, strategies as st
 from strainwave.rig.bench.rig_file import load
 from strainwave.rig.bench.setup import Masses, Rig, Value
 from strainwave.rig.bench.steps import Step
-from strainwave.rig.running.plan import Plan, check, plan, reachable
+from strainwave.rig.running.plan import Pans, Plan, check, plan, reachable
 
 RIG = Rig("bench", "input", Value(0.1), gravity=Value(9.81), masses=(Masses(0.025, 16), Masses(0.1, 9)))
 PLAN = plan(load("couple-rig"), positions=[0.0])
@@ -98,6 +98,19 @@ def test_too_few_small_masses_are_told() -> None:
 def test_a_plan_that_cannot_be_is_refused(peak: float, arguments: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=re.escape(message)):
         plan(RIG, peak, **arguments)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("pans", "masses", "level"),
+    [
+        ("equal", (Masses(0.025, 2), Masses(0.1, 8)), "100 g on a pair of pans that carry the same"),
+        ("unequal", (Masses(0.025, 2), Masses(0.1, 9)), "75 g on a pair of pans that carry the same but for one mass"),
+    ],
+)
+def test_a_level_between_that_the_masses_do_not_make_is_refused(pans: Pans, masses: tuple[Masses, ...], level: str) -> None:
+    """All masses together suffice for the peak; those that are small enough for a step do not."""
+    with pytest.raises(ValueError, match=re.escape(f" do not make {level}")):
+        plan(Rig("bench", "input", Value(0.1), masses=masses), 0.3, pans=pans)
 
 
 def test_a_rig_without_masses_has_no_plan() -> None:

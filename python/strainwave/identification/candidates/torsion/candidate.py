@@ -157,6 +157,11 @@ class TorsionCandidate(ComparedByFields):
     error: float
 
     @property
+    def is_one_sided(self) -> bool:
+        """True if its spring differs between the senses of twist."""
+        return isinstance(self.spring, Asymmetric)
+
+    @property
     def loop(self) -> TorsionLoop:
         """Loop that it was fitted to, with the history found."""
         experiment = self.fit.experiment
@@ -298,7 +303,7 @@ def _factor(found: TorsionCandidate) -> Estimate:
 
 def asymmetry_in_words(fits: Sequence[TorsionCandidate]) -> Iterator[str]:
     """Yield whether a loop determines that its spring differs between the senses of twist; `fits` are those of `fit_loop`."""
-    best, one_sided_fits = fits[0], [each for each in fits if isinstance(each.spring, Asymmetric)]
+    best, one_sided_fits = fits[0], [each for each in fits if each.is_one_sided]
     if not one_sided_fits:
         return
     fit = best if best in one_sided_fits else min(one_sided_fits, key=lambda each: each.error)

@@ -1,0 +1,91 @@
+"""Torsion loop of a gear by its spring and its hysteresis, with standard deviations: a curve to compare gears by.
+
+Elements of hysteresis are not unique: several sets of them make nearly one loop, and an element more changes all others.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.files.gear_set import GearSet
+from strainwave.files.units import convert
+from strainwave.parameters import gear_numbers
+
+Array = NDArray[np.float64]
+
+POINTS_PER_BRANCH = 400
+SHARES_OF_TORQUE = (1.0, 0.5, 0.0, -0.5)  # of the largest torque, at which the branch of falling torque is compared
+RATINGS_OF_TORQUE = ("peak_torque", "rated_torque")  # to which a gear is loaded that nobody measured, best first
+STEP_SIGMA = 0.1  # standard deviations of a number, between two loops
+MAX_STEP_SHARE = 1e-3  # of a number, between two loops
+LAWS = ("gear.stiffness.", "gear.hysteresis.")
+
+
+def measured_torque(gear_set: GearSet) -> float | None:
+    """Return the largest torque at the output that its files contain, or that its ratings allow [N.m]; None without both."""
+    ends = [np.abs(each.measured["output_torque"]).max() for each in gear_set.validation if "output_torque" in each.measured]
+    ratings = (gear_set.ratings[name] for name in RATINGS_OF_TORQUE if name in gear_set.ratings)
+    rated = next((convert(float(each.value), each.unit, "N.m") for each in ratings), None)
+    return float(max(ends)) if ends else rated
+
+
+def torsion_loop(gear: Any, torque: float) -> Array:
+    """Return the twist where the torque falls, at `SHARES_OF_TORQUE` of the largest, and the loss of a cycle.
+
+    Args:
+        gear: of which spring and hysteresis take part
+        torque: largest torque of a loop about zero [N.m]
+
+    Returns:
+        twists [rad] and loss [J], shape (5,)
+
+    >>> import strainwave as sw
+    >>> slip = sw.hysteresis.MaxwellSlip(stiffness=[1e3], breakaway=[1.0])
+    >>> gear = sw.Gear(stiffness=sw.stiffness.Linear(k=1e4), hysteresis=slip)
+    >>> torsion_loop(gear, 41.0).round(6).tolist()  # 40 N.m in the spring, 1 N.m in the element
+    [0.004, 0.002136, 0.0001, -0.00195, 0.012]
+    """
+    from scipy.optimize import brentq
+
+    def loop(reach: float) -> tuple[Array, Array]:
+        corners = [0.0, reach, -reach, reach, -reach, reach]
+        path = np.concatenate([*(np.linspace(a, b, POINTS_PER_BRANCH + 1)[:-1] for a, b in pairwise(corners)), [reach]])
+        force = np.asarray(gear.stiffness.torque(path)) + np.asarray(gear.hysteresis.trace(path))
+        return path[3 * POINTS_PER_BRANCH :], force[3 * POINTS_PER_BRANCH :]
+
+    softest = float(gear.stiffness.twist(torque))
+    reach = float(brentq(lambda twist: loop(twist)[1][0] - torque, 1e-9 * softest, softest, xtol=1e-12 * softest))
+    twist, force = loop(reach)
+    falling = slice(None, POINTS_PER_BRANCH + 1)
+    points = np.interp(torque * np.array(SHARES_OF_TORQUE), force[falling][::-1], twist[falling][::-1])
+    return np.append(points, abs(float(np.trapezoid(force, twist))))
+
+
+def loop_sigma(gear_set: GearSet, torque: float) -> Array | None:
+    """Return the standard deviations of `torsion_loop` by those of spring and hysteresis, shape (5,).
+
+    None if that of a number is not stated.
+    """
+    gear: Any = gear_set.gear
+    values = {path: value for path, (value, _) in gear_numbers(gear).items() if path.startswith(LAWS)}
+    stated = {path: gear_set.sources[path].sigma(value) for path, value in values.items() if path in gear_set.sources}
+    sigmas = [stated.get(path) for path in values]
+    if not values or any(sigma is None for sigma in sigmas):
+        return None
+    sigma, here = np.array(sigmas, float), torsion_loop(gear, torque)
+    slopes = np.zeros((len(here), len(sigma)))
+    for place, (path, value) in enumerate(values.items()):
+        if step := min(STEP_SIGMA * sigma[place], MAX_STEP_SHARE * abs(value)):
+            there = gear.replace({path.removeprefix("gear."): value + step})
+            slopes[:, place] = (torsion_loop(there, torque) - here) / step
+    covariance = np.diag(sigma**2)
+    if (saved := gear_set.covariance) is not None and (own := saved.among(list(values))) is not None:
+        places = [list(values).index(path) for path in own.paths]
+        deviations = np.sqrt(np.diag(own.array))
+        correlation = own.array / np.outer(deviations, deviations)
+        covariance[np.ix_(places, places)] = correlation * np.outer(sigma[places], sigma[places])
+    return np.asarray(np.sqrt(np.einsum("kp,pq,kq->k", slopes, covariance, slopes)))
