@@ -224,6 +224,7 @@ ELSEWHERE = {
         "identification/kinds/between_encoders.py": REACHED,
     },
     "Cubic": {
+        "stiffness/asymmetric.hpp": "the spring at positive twist by default",
         "stiffness/backlash.hpp": "the spring behind its play by default",
     },
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},
