@@ -187,7 +187,7 @@ def differences(first: Model, second: Model) -> list[Difference]:
         if (
             isinstance(each.first, float | int)
             and isinstance(each.second, float | int)
-            and _determined(each.path, first, second)
+            and _determined((each.path,), first, second)
         ):
             one, other = first.sources[each.path].sigma(each.first), second.sources[each.path].sigma(each.second)
             if one is not None and other is not None:
@@ -196,10 +196,14 @@ def differences(first: Model, second: Model) -> list[Difference]:
     return _with_loop(_with_friction(differing, first, second), first, second) + of_ratings
 
 
-def _determined(laws: str | tuple[str, ...], first: GearSet, second: GearSet) -> bool:
-    """True if a measurement of one of two sets determines a number of these laws; the scatter of a catalogue is none."""
-    entries = [entry for each in (first, second) for path, entry in each.sources.items() if path.startswith(laws)]
-    return any(entry.uncertainty is not None for entry in entries)
+def _determined(places: tuple[str, ...], first: GearSet, second: GearSet) -> bool:
+    """True if a measurement of one of two sets determines one of these numbers, or a number of these laws, as "gear.stiffness.".
+
+    The scatter of a catalogue is no measurement.
+    """
+    entries = [(path, entry) for each in (first, second) for path, entry in each.sources.items()]
+    measured = (path for path, entry in entries if entry.uncertainty is not None)
+    return any(path == place or (place.endswith(".") and path.startswith(place)) for path in measured for place in places)
 
 
 def _with_friction(differing: list[Difference], first: GearSet, second: GearSet) -> list[Difference]:
@@ -211,7 +215,7 @@ def _with_friction(differing: list[Difference], first: GearSet, second: GearSet)
     names = [f"friction at {speed * 30.0 / pi:.4g} rpm" for speed in speeds]
     curves = [friction_curve(each.gear, speeds) for each in (first, second)]
     sigmas = [friction_sigma(each, speeds) for each in (first, second)]
-    curve = _of_curves(names, ["N.m"] * len(names), curves, sigmas, _determined(FRICTION_LAW, first, second))
+    curve = _of_curves(names, ["N.m"] * len(names), curves, sigmas, _determined((FRICTION_LAW,), first, second))
     return [*differing[: places[-1] + 1], *curve, *differing[places[-1] + 1 :]]
 
 
