@@ -197,7 +197,7 @@ def differences(first: Model, second: Model) -> list[Difference]:
 
 
 def _determined(places: tuple[str, ...], first: GearSet, second: GearSet) -> bool:
-    """True if a measurement of one of two sets determines one of these numbers, or a number of these laws, as "gear.stiffness.".
+    """True if a measurement of one of two sets determines one of these numbers, or of these laws, as "gear.stiffness.".
 
     The scatter of a catalogue is no measurement.
     """

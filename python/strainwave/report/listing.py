@@ -20,7 +20,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import RatingCheck, check_ratings
 from strainwave.files.recording import Recording
 from strainwave.messages import one_line, shortened
-from strainwave.presentation import MAX_NAME_WIDTH, PAGE_WIDTH
+from strainwave.presentation import PAGE_WIDTH
 
 Row = Sequence[str]
 RAD_PER_ARCSEC = tau / 360.0 / 3600.0
@@ -84,7 +84,7 @@ def agreement_table(found: Sequence[Agreement]) -> str:
 def difference_table(found: Sequence[Difference]) -> str:
     """Return the places where two models differ, one to a line; differences in standard deviations where both sets state them.
 
-    If the table exceeds the width of a page, long names have a line of their own.
+    Names for which the width of a page has no room have a line of their own.
 
     >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad", 0.5), Difference("motor", None, "dc")]))
                     first  second  unit       change    σ
@@ -98,9 +98,8 @@ def difference_table(found: Sequence[Difference]) -> str:
         rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change, apart))
     columns = 6 if any(apart for *_, apart in rows[1:]) else 5
     cells, sides = [row[:columns] for row in rows], "<>><>>"[:columns]
-    if max(map(len, aligned(cells, sides))) <= PAGE_WIDTH:
-        return "\n".join(aligned(cells, sides))
-    names = [_printable(name) if len(name) > MAX_NAME_WIDTH else "" for name, *_ in rows]
+    left = PAGE_WIDTH - max(map(len, aligned([("", *row[1:]) for row in cells], sides)))
+    names = [_printable(name) if len(name) > left else "" for name, *_ in cells]
     lines = aligned([("" if name else row[0], *row[1:]) for name, row in zip(names, cells, strict=True)], sides)
     return "\n".join(chain.from_iterable([name, line] if name else [line] for name, line in zip(names, lines, strict=True)))
 
