@@ -277,13 +277,12 @@ def test_the_units_of_a_controller_are_those_of_its_motor(tab: Any) -> None:
 @needs_page
 @pytest.mark.slow("report")
 def test_a_link_to_a_number_scrolls_the_form_alone_and_a_gear_opens_at_the_top(tab: Any) -> None:
-    tab.set_viewport_size({"width": 1400, "height": 500})
     readings(tab)
     tab.evaluate("scrollTo(0, 40)")
-    tab.locator("#friction .strongest button").first.evaluate("each => each.click()")
+    tab.locator("#loop .strongest button").first.evaluate("each => each.click()")
     top = "[document.activeElement.getBoundingClientRect().top, innerHeight]"
     place, height = tab.evaluate(top)
-    assert tab.evaluate("document.activeElement.id").startswith("field-gear.friction_input.")
+    assert tab.evaluate("document.activeElement.id") == "field-gear.hysteresis.breakaway.0"
     assert tab.evaluate("scrollY") == 40
     assert tab.evaluate("document.getElementById('form').scrollTop") > 0
     assert 0 < place < height
