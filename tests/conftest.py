@@ -39,6 +39,14 @@ def nothing_remembered() -> Iterator[None]:
     kernels.forget_work()
 
 
+@pytest.fixture
+def kept_builds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Shared objects that the package compiles in this process are those of an earlier run if nothing of them has changed."""
+    from tests.support.kept import keep_builds
+
+    keep_builds(monkeypatch)
+
+
 def pytest_configure() -> None:
     """What is compiled to be checked must be what is imported, or the check is of nothing. Interrupts are heeded.
 

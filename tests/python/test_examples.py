@@ -131,6 +131,7 @@ def draws_pictures(page: Path) -> bool:
     return programs_alone and page.stem in pictures.SHOWN.findall(text)
 
 
+@pytest.mark.usefixtures("kept_builds")
 @pytest.mark.parametrize(
     "page", [pytest.param(page, marks=tier(page)) for page in PAGES], ids=lambda page: str(page.relative_to(ROOT))
 )

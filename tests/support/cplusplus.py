@@ -14,6 +14,7 @@ import strainwave as sw
 from strainwave import _core
 from strainwave.native.static_type import instance, parameters, static_type
 
+from tests.support.kept import kept
 from tests.support.strategies import made
 
 ROOT = Path(__file__).parents[2]
@@ -57,8 +58,17 @@ def compilation(command: tuple[str, ...], folder: Path, sources: dict[str, str],
     """Compiles sources, by name, to objects in a folder: the exit status and what the compiler said."""
     for name, text in sources.items():
         (folder / name).write_text(text)
-    result = subprocess.run([*command, "-c", *sources, *options], cwd=folder, capture_output=True, text=True, check=False)
-    return result.returncode, result.stderr
+    return compiled(folder, *command, "-c", *sources, *options)
+
+
+def compiled(folder: Path, *words: str) -> tuple[int, str]:
+    """Runs a compiler in a folder, unless it ran before with the same sources: the exit status and what it said."""
+
+    def run() -> tuple[int, str]:
+        result = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+        return result.returncode, result.stderr
+
+    return kept(folder, words, run)
 
 
 def compiled_before(command: tuple[str, ...], folder: Path, headers: str, *options: str) -> tuple[str, str]:

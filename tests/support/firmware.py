@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ from strainwave.export.firmware import FLAGS, Firmware
 from strainwave.native.static_type import Scalar
 from strainwave.simulation.controller import Observation
 
+from tests.support import cplusplus
 from tests.support.cplusplus import compiler
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def compiled(folder: Path, firmware: Sequence[Firmware], *options: str) -> None:
     """Compile firmware to all.o, as C++20 without its standard library."""
     (folder / "all.cpp").write_text("".join(f'#include "{each.source.name}"\n' for each in firmware))
     command = [*compiler("g++"), *FLAGS.split(), *STRICT, *NO_LIBRARY, *options, "-c", "all.cpp"]
-    subprocess.run(command, cwd=folder, check=True)
+    assert cplusplus.compiled(folder, *command) == (0, "")
 
 
 def library(folder: Path, firmware: Sequence[Firmware], *options: str) -> ctypes.CDLL:
@@ -51,7 +51,7 @@ def library(folder: Path, firmware: Sequence[Firmware], *options: str) -> ctypes
     (folder / "loops.c").write_text("".join(f'#include "{each.source.stem}_run.c"\n' for each in firmware))
     c = [*compiler("gcc"), "-std=c99", "-pedantic", *STRICT, "-fPIC", "-c", "loops.c"]
     for command in (c, [*compiler("gcc"), "-shared", "-o", "all.so", "all.o", "loops.o", "-lm"]):
-        subprocess.run(command, cwd=folder, check=True)
+        assert cplusplus.compiled(folder, *command) == (0, "")
     return ctypes.CDLL(str(folder / "all.so"))
 
 

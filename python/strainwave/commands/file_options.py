@@ -17,7 +17,12 @@ if TYPE_CHECKING:
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.source import MeasurementFile, MeasurementFiles
 
-Gear = Annotated[str, typer.Argument(help="Where to start: a catalogue set, as hfuc-25-100, or a gear file.")]
+Gear = Annotated[
+    str,
+    typer.Argument(
+        help="Where to start: a catalogue set, as hfuc-25-100, or a gear file; of an unknown gear a set of about its size."
+    ),
+]
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,16 @@ The studio starts it with the words of a command line. `read` in place of a verb
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable, Collection
 from io import TextIOBase
+from threading import Thread
 from typing import Any
 
 from strainwave.commands import cli
-from strainwave.operating_system import limit_process
+from strainwave.operating_system import kill_group, limit_process
 from strainwave.progress import watched_by
 from strainwave.questions import Answer, QuestionError
 
@@ -45,6 +47,7 @@ def main(words: list[str]) -> int:
         channel.flush()
 
     limit_process(MAX_PROCESSOR_TIME, MAX_MEMORY)
+    Thread(target=_end_with_server, daemon=True).start()
     sys.stdout = sys.stderr = Lines(lambda line: tell(line=line))
     sys.argv = ["strainwave", *words]
     with watched_by(_progress(tell)):
@@ -55,6 +58,13 @@ def main(words: list[str]) -> int:
     if question is not None:
         tell(question=question_of(question))
     return code
+
+
+def _end_with_server() -> None:
+    """Wait for the end of the input, which the server holds open as long as it runs, and end this process and its own."""
+    while os.read(0, 1):  # not by sys.stdin, whose lock would be held at the end
+        pass
+    kill_group(os.getpid())
 
 
 def _progress(tell: Callable[..., None]) -> Callable[[str, float], None]:

@@ -38,6 +38,7 @@ class Jobs:
         self._workspace, self._forms, self._changed = workspace, forms, changed
         self._running = asyncio.Semaphore(MAX_RUNNING)
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._is_closing = False
         self.jobs = {job["id"]: job for job in _earlier(workspace.results)}
         for job in self.jobs.values():
             if job["state"] in ("waiting", "running"):
@@ -78,7 +79,8 @@ class Jobs:
             self._tasks[name].cancel()
 
     async def close(self) -> None:
-        """End all jobs."""
+        """End all jobs, which the server's end interrupts."""
+        self._is_closing = True
         tasks = list(self._tasks.values())
         for task in tasks:
             task.cancel()
@@ -106,7 +108,7 @@ class Jobs:
         """Yield what the process of a verb reports, files by their names on the page, and at last its exit code."""
         process = await asyncio.create_subprocess_exec(
             *(sys.executable, *RUNS_VERB, *words),
-            stdin=asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE,  # whose end tells the process that this server has ended
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
             cwd=self._workspace.folder,
@@ -138,7 +140,7 @@ class Jobs:
                     else:
                         self._take(job, event)
         except asyncio.CancelledError:
-            state = "cancelled"
+            state = "interrupted" if self._is_closing else "cancelled"
         except (OSError, ValueError) as error:
             job["lines"].append(str(error))
             state = "refused"

@@ -140,6 +140,14 @@ class Studio:
         self._tell_all(self._state())
         return JSONResponse({"name": name})
 
+    async def remove(self, request: Request) -> Response:
+        try:
+            self.workspace.remove(request.path_params["name"])
+        except (ValueError, OSError) as error:
+            return JSONResponse({"problem": str(error)}, 400)
+        self._tell_all(self._state())
+        return Response(status_code=204)
+
     async def result(self, request: Request) -> Response:
         try:
             path = self.workspace.result(request.path_params["job"], request.path_params["path"])
@@ -266,6 +274,7 @@ def application(studio: Studio, token: str, hosts: frozenset[str]) -> ASGIApp:
         Route("/{token}/", studio.home),
         Route("/{token}/asset/{name}", studio.asset),
         Route("/{token}/files/{name}", studio.upload, methods=["PUT"]),
+        Route("/{token}/files/{name}", studio.remove, methods=["DELETE"]),
         Route("/{token}/results/{job}/{path:path}", studio.result),
         WebSocketRoute("/{token}/live", studio.live),
     ]

@@ -103,6 +103,17 @@ class Workspace:
                 file.write(part)
         return free
 
+    def remove(self, name: str) -> None:
+        """Remove a file that a page uploaded.
+
+        Raises:
+            ValueError: there is no such file
+        """
+        path = self.path_of(name)
+        if path.parent != self.uploads:
+            raise ValueError(f"{quoted(name)} was not uploaded; it stays")
+        path.unlink()
+
     def token(self) -> str:
         """Return the secret of this studio's addresses, which a later server of the same folder keeps."""
         path = self.folder / TOKEN_FILE

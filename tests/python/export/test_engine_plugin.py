@@ -19,6 +19,7 @@ from strainwave.native.compilers import NoCompilerError
 from typer.testing import CliRunner
 
 mujoco = pytest.importorskip("mujoco")
+pytestmark = pytest.mark.usefixtures("kept_builds")
 
 DRIVES = ("position-drive", "robot-joint")  # a compilation of each takes some seconds
 AMPLITUDE, FREQUENCY, DURATION = 0.2, 0.5, 2.0  # rad, Hz, s

@@ -26,6 +26,7 @@ fmpy = pytest.importorskip("fmpy")
 fmi1, fmi2, fmi3 = (pytest.importorskip(f"fmpy.fmi{version}") for version in (1, 2, 3))
 validation = pytest.importorskip("fmpy.validation")
 etree = pytest.importorskip("lxml.etree")
+pytestmark = pytest.mark.usefixtures("kept_builds")
 
 DRIVES = {2: "robot-joint", 3: "tilt-actuator-lumped"}  # one for each version of FMI: a compilation takes some seconds
 STEP = 2e-4  # s

@@ -74,6 +74,7 @@ def test_every_export_states_that_a_log_counts_its_current_the_other_way() -> No
 
 
 @pytest.mark.slow("export")
+@pytest.mark.usefixtures("kept_builds")
 def test_compiled_exports_state_what_was_identified() -> None:
     plugin = sw.export.mujoco_plugin(IDENTIFIED).files
     package = sw.export.modelica(IDENTIFIED, name="Joint").files

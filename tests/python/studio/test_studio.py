@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -275,6 +277,7 @@ def test_a_job_that_the_end_of_a_server_interrupted_is_listed_by_the_next(folder
         name = first.told("started")
         token = first.studio.workspace.token()
     state = folder / "results" / name / "job.json"
+    assert json.loads(state.read_text())["state"] == "interrupted"
     state.write_text(json.dumps(json.loads(state.read_text()) | {"state": "running"}))  # as a killed server leaves it
     for second in opened(folder):
         jobs = {job["id"]: job for job in second.told("jobs")}
@@ -282,6 +285,34 @@ def test_a_job_that_the_end_of_a_server_interrupted_is_listed_by_the_next(folder
         assert jobs[name]["values"]["paths"] == ["table.csv"]
         assert second.studio.workspace.token() == token
         assert "table.csv" in second.studio.workspace.files
+
+
+@pytest.mark.slow("report")
+def test_a_job_ends_with_its_server_however_that_ends(tmp_path: Path) -> None:
+    words = ("-m", "strainwave.commands.job", "compensate", "--members=500", f"--out={tmp_path}", "--", "robot-joint")
+    with subprocess.Popen(
+        (sys.executable, *words), stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline()
+        assert process.stdin is not None
+        process.stdin.close()
+        assert process.wait(60) != 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_removes_what_was_uploaded_and_nothing_else(folder: Path, tmp_path: Path) -> None:
+    kept = tmp_path / "kept.csv"
+    kept.write_bytes(friction_table())
+    for page in opened(folder, kept):
+        page.put("table.csv", friction_table())
+        codes = [
+            page.client.delete(f"files/{name}", headers={"origin": f"http://{HOST}"}).status_code
+            for name in ("table.csv", "kept.csv", "missing.csv")
+        ]
+        assert codes == [204, 400, 400]
+        assert list(page.studio.workspace.files) == ["kept.csv"]
+    assert kept.exists()
 
 
 def test_two_pages_see_the_same_files(page: Page) -> None:

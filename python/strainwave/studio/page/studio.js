@@ -3,6 +3,7 @@
 const RECONNECT = 1000; // ms between two attempts
 const ENDED = { done: "done", contradicted: "a check failed", asked: "a question is open", refused: "refused", failed: "failed", cancelled: "cancelled", interrupted: "interrupted: the server ended" };
 const SHEETS = { Gear: "gear", Drive: "motor, controller, load and a run" }; // of the workbench itself
+const FIRST = ["constant", "joint"]; // options that many recordings need
 const CHOICES = { side: ["", "input", "output"] };
 const label = (name) => name.replaceAll("_", " ");
 const shortNumber = (value) => shortText(value, 3);
@@ -33,6 +34,7 @@ class Studio {
     document.body.ondrop = (event) => { if (!event.defaultPrevented) { event.preventDefault(); this.upload(event.dataTransfer.files); } };
   }
   show(page) {
+    this.say("");
     document.body.dataset.page = page;
     for (const tab of this.tabs) tab.setAttribute("aria-current", tab.textContent === page ? "page" : "false");
     for (const [name, sheet] of Object.entries(this.sheets)) sheet.element.hidden = name !== page;
@@ -54,8 +56,10 @@ class Studio {
     this.connection.textContent = is ? "" : "The server does not answer. The page keeps what you entered and connects again when strainwave studio runs.";
     this.connection.classList.toggle("bad", !is);
   }
+  /** Asks the server. While it is away a run is refused, and of all else the newest is kept. */
   ask(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    else if (message.do === "start") this.take({ problem: "The server does not answer: start strainwave studio again, then run." });
     else this.waiting = [...this.waiting.filter((each) => each.do !== message.do), message];
   }
   take(message) {
@@ -63,11 +67,11 @@ class Studio {
     if (message.jobs) this.jobs = new Map(message.jobs.map((job) => [job.id, job]));
     if (message.job) this.jobs.set(message.job.id, message.job);
     if (message.jobs || message.job) for (const sheet of Object.values(this.sheets)) sheet.jobsChanged(message.job);
-    if (message.started) for (const sheet of Object.values(this.sheets)) sheet.chosenJob = message.started;
+    if (message.started) document.getElementById(message.started)?.scrollIntoView({ block: "nearest" });
     if (message.read) this.sheets.Identify.showReadings(message.read);
     if (message.gear) this.openGear(message.gear);
     if (message.spectrum) this.sheets.Faults.showSpectrum(message.spectrum);
-    if (message.problem) { this.say(message.problem, true); for (const sheet of Object.values(this.sheets)) sheet.problem(message.problem, message.of); }
+    if (message.problem) for (const sheet of Object.values(this.sheets)) sheet.problem(message.problem, message.of);
   }
   openGear(start) {
     const { workbench } = this, { travel } = workbench.view;
@@ -82,7 +86,7 @@ class Studio {
       try {
         const answer = await fetch(`files/${encodeURIComponent(file.name)}`, { method: "PUT", body: file });
         const told = answer.headers.get("content-type").includes("json") ? await answer.json() : { problem: await answer.text() };
-        this.say(told.problem ?? "", Boolean(told.problem));
+        this.say(told.problem ?? `${told.name} is in the studio`, Boolean(told.problem));
         if (told.name) for (const sheet of Object.values(this.sheets)) sheet.fileCame(told.name);
         if (told.problem) for (const sheet of Object.values(this.sheets)) sheet.problem(told.problem);
       } catch { this.connected(false); this.say(`${file.name} was not sent: the server does not answer`, true); }
@@ -91,13 +95,14 @@ class Studio {
   async saveGear() {
     const name = `${(this.workbench.state.name || "gear").replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-+|-+$/g, "") || "gear"}.toml`;
     await this.upload([new File([this.workbench.toml()], name)]);
+    for (const sheet of Object.values(this.sheets)) if (!sheet.element.hidden) sheet.build();
   }
 }
 
 /** One page: its files, the form of a verb, and the jobs of its verbs. */
 class Sheet {
   constructor(studio, page, forms) {
-    Object.assign(this, { studio, page, forms, values: {}, chosenJob: null });
+    Object.assign(this, { studio, page, forms, values: {} });
     this.element = element("section", { className: "sheet", hidden: true, role: "main", "aria-label": page });
     this.verb = element("select", { "aria-label": "what to do" }, ...forms.map(({ verb, summary }) => element("option", { value: verb }, `${verb}: ${summary}`)));
     this.verb.onchange = () => this.build();
@@ -117,16 +122,23 @@ class Sheet {
   get form() { return this.studio.forms[this.verb.value]; }
   get takesFiles() { return this.form.fields.some(({ kind }) => kind === "files" || kind === "file"); }
   shown() { this.build(); }
-  problem(text, of) { if (!this.element.hidden && !of) this.message.textContent = text; }
+  problem(text, of) {
+    if (this.element.hidden) return;
+    this.message.textContent = of === "read" ? "" : text;
+    if (of === "read") this.readBox.replaceChildren(element("p", { className: "problem" }, text));
+  }
   // ---- The form ------------------------------------------------------------------------------------------------------
   build() {
-    const { fields } = this.form, first = fields.filter(({ required, kind }) => required && kind !== "files"), rest = fields.filter(({ required, name }) => !required && !this.isInTable(name));
+    const { fields } = this.form, inFront = ({ required, name }) => required || FIRST.includes(name);
+    const first = fields.filter((field) => inFront(field) && field.kind !== "files"), rest = fields.filter((field) => !inFront(field) && !this.isInTable(field.name));
     const begin = element("button", { className: "begin" }, `Run ${this.verb.value}`);
     this.formBox.replaceChildren(...first.map((field) => this.row(field)),
       element("details", { open: this.hasOptions ?? !this.takesFiles }, element("summary", {}, "Options"), ...rest.map((field) => this.row(field))), begin);
     this.formBox.querySelector("details").ontoggle = ({ target }) => { this.hasOptions = target.open; };
     this.filesChanged();
     this.jobsChanged();
+    if (this.focused) document.getElementById(this.focused)?.focus();
+    this.focused = null;
   }
   isInTable(name) { return this.page === "Identify" && this.takesFiles && ["column", "unit", "side"].includes(name); }
   row(field) {
@@ -141,7 +153,7 @@ class Sheet {
       input = files;
     } else if (CHOICES[field.name]) { input = select(CHOICES[field.name], value ?? "", { id }); input.onchange = () => put(input.value); }
     else if (field.several) {
-      input = element("textarea", { id, rows: Math.max(1, [value ?? []].flat().length), value: [value ?? []].flat().join("\n"), placeholder: "one a line" });
+      input = element("textarea", { id, rows: 1 + [value ?? []].flat().length, value: [value ?? []].flat().join("\n"), placeholder: "one a line" });
       input.onchange = () => put(input.value.split("\n").map((line) => line.trim()).filter(Boolean));
     } else {
       input = element("input", { id, value: value ?? "", placeholder: field.default, autocomplete: "off", spellcheck: false });
@@ -173,11 +185,18 @@ class Sheet {
     if (!this.takesFiles) { this.filesBox.replaceChildren(); this.readBox.replaceChildren(); return; }
     const chosen = new Set(this.values.paths ?? []);
     const rows = this.studio.files.filter((name) => !name.endsWith(".toml")).map((name) => {
-      const box = element("input", { type: "checkbox", checked: chosen.has(name), onchange: () => this.choose(name, box.checked) });
-      return element("label", {}, box, ` ${name}`, this.studio.opened.includes(name) ? element("small", {}, " opened") : "");
+      const box = element("input", { type: "checkbox", id: `${this.page}-file-${name}`, checked: chosen.has(name), onchange: () => this.choose(name, box.checked) });
+      return element("label", {}, box, ` ${name}`, this.studio.opened.includes(name) ? element("small", {}, " opened") : this.remover(name));
     });
     const more = element("input", { type: "file", multiple: true, onchange: () => this.studio.upload(more.files), "aria-label": "add files" });
+    const focus = document.activeElement?.id;
     this.filesBox.replaceChildren(element("h2", {}, "Recordings"), ...rows, element("p", { className: "hint" }, "Drop files on this page, or choose them: ", more));
+    if (focus) document.getElementById(focus)?.focus();
+  }
+  remover(name) {
+    const made = element("button", { type: "button", className: "small", title: `remove ${name} from the studio`, "aria-label": `remove ${name} from the studio` }, "×");
+    made.onclick = (event) => { event.preventDefault(); fetch(`files/${encodeURIComponent(name)}`, { method: "DELETE" }).catch(() => this.studio.connected(false)); };
+    return made;
   }
   fileCame(name) {
     if (this.element.hidden || !this.takesFiles || name.endsWith(".toml")) return;
@@ -238,7 +257,7 @@ class Sheet {
     const ways = answers.map((answer) => {
       const made = element("button", { type: "button" }, `${answer.label}${answer.gives ? `: ${answer.gives}` : ""}`);
       const numbers = Object.entries(answer.numbers).map(([key, meaning]) => [key, element("input", { placeholder: meaning, "aria-label": meaning, inputMode: "decimal" })]);
-      made.onclick = () => { if (this.answer(answer, Object.fromEntries(numbers.map(([key, input]) => [key, input.value.trim()])))) answered(); };
+      made.onclick = () => { this.focused = `${this.page}-${this.form.fields.find(({ required, kind }) => required && kind !== "files")?.name}`; if (this.answer(answer, Object.fromEntries(numbers.map(([key, input]) => [key, input.value.trim()])))) answered(); };
       return element("li", {}, made, ...numbers.map(([, input]) => input));
     });
     return element("div", { className: "question", role: "group", "aria-label": "question" }, element("p", {}, text), element("ol", {}, ...ways));
@@ -262,24 +281,26 @@ class Sheet {
   jobsChanged(changed) {
     const verbs = new Set(this.forms.map(({ verb }) => verb)), jobs = [...this.studio.jobs.values()].filter(({ verb }) => verbs.has(verb)).reverse();
     if (changed && !verbs.has(changed.verb)) return;
+    const shown = changed && document.getElementById(changed.id);
+    if (shown) { shown.replaceWith(this.job(changed, changed === jobs[0])); return; } // others keep their reports as they are
     this.jobsBox.replaceChildren(...(jobs.length ? [element("h2", {}, "Runs")] : []), ...jobs.map((job, place) => this.job(job, place === 0)));
   }
   job(job, isNewest) {
     const { id, verb, state, stage, share, lines, files, seconds, question } = job, runs = state === "running" || state === "waiting";
     const head = element("div", { className: "bar" }, element("h3", {}, id), element("span", { className: state === "done" ? "" : "quiet" }, runs ? state : `${ENDED[state] ?? state}${seconds ? `, ${shortText(seconds, 2)} s` : ""}`));
-    const box = element("article", { className: `job ${state}` }, head);
+    const box = element("article", { className: `job ${state}`, id }, head);
     if (runs) {
       const cancel = element("button", { type: "button", onclick: () => this.studio.ask({ do: "cancel", name: id }) }, "Cancel");
       const bar = element("progress", { "aria-label": "progress" });
       if (typeof share === "number") bar.value = share;
       head.append(cancel);
-      box.append(bar, element("span", {}, ` ${stage ?? ""}`));
+      box.append(bar, element("span", {}, ` ${stage ?? ""}, ${Math.round(Date.now() / 1000 - job.begun)} s`));
       return box;
     }
     const again = element("button", { type: "button", title: "Put what this run was asked into the form" }, "Take into the form");
-    again.onclick = () => { this.values = structuredClone(job.values); this.verb.value = verb; this.build(); this.askReadings(); };
+    again.onclick = () => { this.values = structuredClone(job.values); this.verb.value = verb; this.hasOptions = true; this.build(); this.askReadings(); this.element.scrollIntoView(); };
     head.append(again);
-    if (question) box.append(this.question(question, () => this.start()));
+    if (question) box.append(isNewest ? this.question(question, () => this.start()) : element("p", {}, question.text));
     if (lines.length) box.append(element("pre", { tabIndex: 0, "aria-label": "output" }, lines.join("\n")));
     const link = (name) => element("a", { href: `results/${id}/${name.split("/").map(encodeURIComponent).join("/")}`, target: "_blank", rel: "noopener" }, name);
     if (files.length) box.append(element("p", { className: "links" }, ...files.filter((name) => !name.includes("/")).flatMap((name) => [link(name), " "])));
@@ -321,7 +342,8 @@ class FaultSheet extends Sheet {
       element("div", { className: "sliders" }, element("label", { className: "slider" }, element("span", {}, "drive"), drive), element("label", { className: "slider" }, element("span", {}, "lobes share"), combine),
         slider("moved", "housing_eccentricity", "eccentricity of the shaft", 0, 200, 1e-6, "µm"), slider("moved", "housing_tilt_x", "tilt of the shaft", -1, 1, 1e-3, "mrad"),
         slider("moved", "generator_eccentricity", "eccentricity of the generator", 0, 200, 1e-6, "µm"), slider("moved", "generator_tilt_x", "tilt of the generator", -1, 1, 1e-3, "mrad"),
-        slider("record", "speed", "speed of the input", 5, 150, 1, "rad/s"), slider("record", "noise", "noise of the current", 0, 0.2, 1, "A")),
+        slider("record", "speed", "speed of the input", 5, 155, 1, "rad/s"), slider("record", "duration", "length of the record", 1, 21, 1, "s"),
+        slider("record", "load_torque", "load torque", 0, 100, 1, "N·m"), slider("record", "noise", "noise of the current", 0, 0.2, 1, "A")),
       this.canvas, this.reading);
     const content = super.content();
     this.shownBox.prepend(live);
@@ -332,9 +354,14 @@ class FaultSheet extends Sheet {
     this.plot ??= new Plot(this.canvas, () => {});
     if (!this.found) this.askSpectrum();
   }
-  askSpectrum() { this.studio.ask({ do: "spectrum", values: this.live }); }
+  askSpectrum() {
+    this.reading.textContent = "computing";
+    this.canvas.classList.add("old");
+    this.studio.ask({ do: "spectrum", values: this.live });
+  }
   showSpectrum({ orders, healthy, misaligned, limit, assumed }) {
     this.found = true;
+    this.canvas.classList.remove("old");
     const wide = [0.5, ...orders, orders.at(-1) + 0.5];
     this.plot.show(["order, periods a turn of the input", "current [A]"], [
       { x: [...orders.map((order) => order + 0.12), NaN], y: [...healthy, 0], colour: "--other", dash: true, mark: "bar" },
@@ -345,7 +372,7 @@ class FaultSheet extends Sheet {
     this.reading.textContent = `${shown.length ? `${shown.length > 1 ? "Orders" : "Order"} ${shown.join(", ")} ${shown.length > 1 ? "change" : "changes"}` : "No order changes"} by more than the limit, the smallest line that such a record shows (grey). Blue: misaligned, orange: without misalignment.${assumed ? " The drive has no dimensions of the wave generator: they are assumed." : ""}`;
     this.canvas.setAttribute("aria-label", this.reading.textContent);
   }
-  problem(text, of) { if (of === "spectrum") this.reading.textContent = text; else super.problem(text, of); }
+  problem(text, of) { if (of === "spectrum") { this.reading.textContent = text; this.plot.show(["order", "current [A]"], []); } else super.problem(text, of); }
 }
 
 const about = dataIn("studio"), CHANNELS = about.channels;
