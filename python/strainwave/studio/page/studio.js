@@ -42,6 +42,7 @@ class Studio {
     if (page === "Drive") this.workbench.form.open.add("drive");
     if (page in SHEETS) this.workbench.showAll();
     else this.sheets[page].shown();
+    this.workbench.toTop();
   }
   say(text, bad = false) { this.workbench.say(text, bad); }
   // ---- The server ----------------------------------------------------------------------------------------------------
