@@ -194,6 +194,10 @@ ELSEWHERE = {
     "Cyclic": {
         "parameter_drive.hpp": BOUND_TO_ANY,
         "identification/kinds/constant_speed.py": "waves found over the angle, around the friction that is known",
+        "analysis/friction_curve.py": "a mean over the angle is that of the law within",
+    },
+    "TwoSided": {
+        "parameter_drive.hpp": BOUND_TO_ANY,
     },
     "Thermal": {
         "parameter_drive.hpp": BOUND_TO_ANY,
@@ -224,7 +228,7 @@ ELSEWHERE = {
         "identification/kinds/between_encoders.py": REACHED,
     },
     "Cubic": {
-        "stiffness/asymmetric.hpp": "the spring at positive twist by default",
+        "stiffness/two_sided.hpp": "the spring at positive twist by default",
         "stiffness/backlash.hpp": "the spring behind its play by default",
     },
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},

@@ -124,6 +124,7 @@ SPRINGS = [
     sw.stiffness.ThreeSegment(k1=8e3, k2=1e4, k3=1.3e4, t1=4.0, t2=9.0),
     sw.stiffness.Cubic(a1=1e4, a3=1e9),
     COMPLIANCE,
+    sw.stiffness.TwoSided(law=sw.stiffness.Linear(k=1e4), negative_factor=0.8),
     sw.stiffness.Backlash(law=sw.stiffness.Linear(k=1e4), clearance=1e-4),
 ]
 MEMORIES = [

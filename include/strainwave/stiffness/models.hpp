@@ -1,6 +1,6 @@
 #pragma once
 #include <strainwave/list.hpp>
-#include <strainwave/stiffness/asymmetric.hpp>
+#include <strainwave/stiffness/two_sided.hpp>
 #include <strainwave/stiffness/backlash.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
@@ -12,7 +12,7 @@
 namespace strainwave::stiffness {
 
 using Plain = List<Linear, Piecewise, ThreeSegment, Cubic, MultiCompliance>;
-using Sided = Extended<Plain, Asymmetric>;
+using Sided = Extended<Plain, TwoSided>;
 using Models = Extended<Sided, Backlash>;
 
 }  // namespace strainwave::stiffness

@@ -29,6 +29,7 @@ PURPOSES = {
     "learn": "classification of faults",
     "newton": "export of actuators of Newton",
     "predictive": "predictive control",
+    "studio": "pages of the studio in a browser",
     "video": "videos of the torsion rig",
 }
 CORE_WORKS = ("simulation", "identification", "reports")

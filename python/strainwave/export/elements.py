@@ -351,7 +351,7 @@ def _springs(law: Any, twist: float) -> tuple[Spring, ...]:
             return _stiffening([0.0, law.knee], [law.k1, law.k1 + law.k2])
         case stiffness.ThreeSegment() if law.k1 <= law.k2 <= law.k3:
             return _stiffening([0.0, float(law.twist(law.t1)), float(law.twist(law.t2))], [law.k1, law.k2, law.k3])
-        case stiffness.Asymmetric():  # the mean of both senses, as these springs are odd
+        case stiffness.TwoSided():  # the mean of both senses, as these springs are odd
             mean = 0.5 * (1.0 + float(law.negative_factor))
             return tuple(spring.times(mean) for spring in _springs(law.law, twist))
         case stiffness.Backlash():

@@ -10,7 +10,7 @@ from strainwave.files.gear_set import GearSet, load
 
 from tests.python.files.gear_file_texts import BASE, GRID, THERMAL, VISCOUS, with_line
 
-SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compliance" or "backlash"'
+SPRINGS = '"linear" or "piecewise" or "three_segment" or "cubic" or "multi_compliance" or "two_sided" or "backlash"'
 STIFFNESS = f"write model = {SPRINGS}"
 LAWS = (
     '"viscous" or "coulomb" or "stribeck" or "position_dependent" or "lugre" or "maxwell_slip_friction" or "load_dependent" '

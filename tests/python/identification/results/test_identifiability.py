@@ -163,8 +163,8 @@ def test_a_result_equals_its_copy() -> None:
 
 
 def test_columns_that_no_fit_uses_are_said() -> None:
-    found = sw.identify("hfuc-20-80", {"torsion": branch().with_column("temperature", np.full(200, 295.0), "K")})
-    assert any("not used: temperature" in remark for remark in found.files[0].remarks)
+    found = sw.identify("hfuc-20-80", {"torsion": branch().with_column("supply", np.full(200, 22.0), "V")})
+    assert any("not used: supply" in remark for remark in found.files[0].remarks)
 
 
 def test_limits_of_the_maker_that_a_measurement_exceeds_are_remarked() -> None:

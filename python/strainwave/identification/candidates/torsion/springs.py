@@ -21,7 +21,7 @@ from strainwave.equality import ComparedByFields
 Array = NDArray[np.float64]
 MAX_TURNS = 4  # of choosing spring and hysteresis in turn; no loop tried took more than three
 Law = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
-Spring = Law | stiffness.Asymmetric | stiffness.Backlash
+Spring = Law | stiffness.TwoSided | stiffness.Backlash
 TRIED_KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
 TRIED_CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2])  # of half the span: play of flanks
 TRIED_FACTORS = (0.5, 0.7, 0.85, 1.2, 1.4, 2.0)  # of the torque at negative twist
@@ -357,7 +357,7 @@ class Asymmetric(Wrapper):
         return f"asymmetric {self.law.words}"
 
     def wrapped(self, law: Any, number: float) -> Spring:
-        return stiffness.Asymmetric(law=law, negative_factor=number)
+        return stiffness.TwoSided(law=law, negative_factor=number)
 
     def libraries(self, twist: Array, half: float, gear: Gear) -> Iterator[tuple[float, Library]]:
         law = self.law.library(twist, half, gear)

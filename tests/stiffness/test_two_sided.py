@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.export.elements import GearElements
-from strainwave.stiffness import Asymmetric, Backlash, Cubic, Linear, MultiCompliance, ThreeSegment
+from strainwave.stiffness import Backlash, Cubic, Linear, MultiCompliance, ThreeSegment, TwoSided
 
 from tests.support.strategies import made
 
 K, FACTOR, ARM = 1e4, 0.64, 0.5
-SPRING = Asymmetric(law=Linear(k=K), negative_factor=FACTOR)
+SPRING = TwoSided(law=Linear(k=K), negative_factor=FACTOR)
 
 
 def test_each_sense_is_a_line_of_its_own_through_zero() -> None:
@@ -26,22 +26,22 @@ def test_each_sense_is_a_line_of_its_own_through_zero() -> None:
 
 def test_knees_stay_at_their_twists() -> None:
     law = ThreeSegment(k1=8e3, k2=11e3, k3=14e3, t1=1.0, t2=4.0)
-    spring = Asymmetric(law=law, negative_factor=2.0)
+    spring = TwoSided(law=law, negative_factor=2.0)
     assert spring.twist([-2.0, -8.0]) == pytest.approx([-law.twist(1.0), -law.twist(4.0)], rel=1e-15)
 
 
 def test_factor_1_is_the_spring_itself_and_none_below_0_is_taken() -> None:
     law = Cubic(a1=1e4, a3=1e9)
-    spring, twist = Asymmetric(law=law, negative_factor=1.0), np.linspace(-1e-3, 1e-3, 7)
+    spring, twist = TwoSided(law=law, negative_factor=1.0), np.linspace(-1e-3, 1e-3, 7)
     for verb in ("torque", "tangent", "energy"):
         assert getattr(spring, verb)(twist).tolist() == getattr(law, verb)(twist).tolist()
-    with pytest.raises(ValueError, match=r"asymmetric\.negative_factor = 0 "):
-        Asymmetric(law=law, negative_factor=0.0)
+    with pytest.raises(ValueError, match=r"two_sided\.negative_factor = 0 "):
+        TwoSided(law=law, negative_factor=0.0)
 
 
 def test_its_bound_is_that_of_its_spring() -> None:
-    spring = Asymmetric(law=made(MultiCompliance), negative_factor=0.5)
-    with pytest.raises(ValueError, match=r"asymmetric: twist = .* lies outside of \[-0\.01315"):
+    spring = TwoSided(law=made(MultiCompliance), negative_factor=0.5)
+    with pytest.raises(ValueError, match=r"two_sided: twist = .* lies outside of \[-0\.01315"):
         spring.torque(1.0)
 
 

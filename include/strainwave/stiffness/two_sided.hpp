@@ -8,13 +8,13 @@ namespace strainwave {
 namespace stiffness {
 
 template <class S, class Law_ = Cubic<S>>
-struct Asymmetric {
+struct TwoSided {
     using Law = Law_;
 
     Law law{};
     S negative_factor{1.0};
 
-    static constexpr auto name = "asymmetric";
+    static constexpr auto name = "two_sided";
     static constexpr auto source =
         SW_REVIEW
         ", section 3: the cubic polynomial \"cannot describe asymmetric behavior\"; one factor for the negative sense is assumed";
@@ -31,8 +31,8 @@ struct Asymmetric {
         A loop shows the asymmetry only together with its zeros of twist and torque. A spring that bends at a torque other than
         zero, as by a preload of the teeth, is not of this kind.
 
-        >>> from strainwave.stiffness import Asymmetric, Linear
-        >>> spring = Asymmetric(law=Linear(k=1e4), negative_factor=0.75)
+        >>> from strainwave.stiffness import TwoSided, Linear
+        >>> spring = TwoSided(law=Linear(k=1e4), negative_factor=0.75)
         >>> spring.torque([0.001, -0.001]), spring.tangent(-0.001), spring.energy(-0.001)
         (array([10. , -7.5]), 7500.0, 0.00375))";
 
@@ -42,7 +42,7 @@ struct Asymmetric {
         visit(SW_REQUIRED(m, negative_factor, "1", "Torque at a negative twist f, relative to that at the opposite twist", smallest));
     }
 
-    constexpr auto compile() const { return Asymmetric<S, decltype(compiled(law))>{compiled(law), negative_factor}; }
+    constexpr auto compile() const { return TwoSided<S, decltype(compiled(law))>{compiled(law), negative_factor}; }
 
     constexpr S torque(const S& twist) const { return factor(twist) * law.torque(twist); }
     constexpr S twist(const S& torque) const { return law.twist(torque / factor(torque)); }
