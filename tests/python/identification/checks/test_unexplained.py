@@ -13,12 +13,14 @@ from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.unexplained import (
     MAX_SHARE_OF_SHAPE,
+    OVER_OUTPUT,
     OVER_SPEED,
     OVER_TURN,
     SHAPE_OF_RESIDUALS,
     causes,
     has_shape,
     judged_shape,
+    largest_shape,
     left,
 )
 from strainwave.report.identify import identify_report
@@ -198,6 +200,15 @@ def test_gravity_is_as_uncertain_as_a_second_load_that_the_model_lacks(size: flo
     assert any("has a shape over the angle of the output" in each for each in file.remarks) == (size > 0.0)
     for path, truth in {"gear.friction_input.coulomb": 0.03, "gear.friction_input.viscous": 2e-4}.items():
         assert abs(estimates[path].value - truth) < 2.0 * estimates[path].sigma < 0.3 * truth
+
+
+@pytest.mark.parametrize(
+    ("over", "share", "counts"), [(OVER_OUTPUT, 0.05, True), (OVER_SPEED, 0.05, False), (OVER_SPEED, 0.35, True)]
+)
+def test_a_small_shape_over_the_speed_makes_no_number_less_certain(over: str, share: float, counts: bool) -> None:
+    """Torques over the speed resemble friction: an arbitrary one made right friction of EMPS five times as uncertain."""
+    residual = 0.1 * NOISE + share * np.sqrt(2.0) * np.sin(ANGLE)
+    assert largest_shape(residual, {over: np.mod(ANGLE, 2.0 * np.pi)}, 1.0) == (over if counts else "")
 
 
 def test_few_samples_have_no_check() -> None:
