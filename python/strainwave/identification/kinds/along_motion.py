@@ -296,10 +296,10 @@ def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
 def _delay(best: MotionCandidate) -> Iterator[str]:
     """Yield the sentence about a delay that was fitted, or that is too long to be fitted."""
     if (late := _samples_late(best)) != 0.0:
-        samples, way = abs(late), "behind" if late > 0.0 else "ahead of"
+        samples, time, way = abs(late), 1e3 * abs(late) * best.log.motion.step, "behind" if late > 0.0 else "ahead of"
         yield (
-            f"{best.log.effort} comes about {samples:.2g} samples {way} the motion, {1e3 * samples * best.log.motion.step:.2g} ms: "
-            "it was filtered, or another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
+            f"{best.log.effort} comes about {samples:.2g} samples, {time:.2g} ms, {way} the motion: it was filtered, or "
+            "another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
         )
     for nuisance in best.fit.estimates:
         if nuisance.path == "delay":
