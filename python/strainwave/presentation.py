@@ -86,7 +86,7 @@ class Presented:
 
     def __str__(self) -> str:
         """The result as a table of at most 80 columns."""
-        head = wrapped(f"{type(self).__name__}: {one_line(self._headline())}")
+        head = wrapped(f"{getattr(self, '_title', type(self).__name__)}: {one_line(self._headline())}")
         rows = list(self._rows())
         more = len(rows) - MAX_PRINTED_ROWS
         table = [*aligned(rows[:MAX_PRINTED_ROWS]), *([f"… and {more} more: to_dict() has all"] if more > 0 else [])]

@@ -232,7 +232,7 @@ def test_a_result_prints_as_a_table_of_a_page() -> None:
         lines = str(result).splitlines()
         if not isinstance(result, Statement):
             assert max(map(len, lines)) <= PAGE_WIDTH, name
-            assert lines[0].startswith(f"{name}:"), name
+            assert lines[0].startswith(f"{getattr(result, '_title', name)}:"), name
             assert len(lines) > 1, name
         assert "object at 0x" not in str(result), name
 

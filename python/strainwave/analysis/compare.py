@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
-from math import hypot, isfinite
+from math import hypot, isfinite, pi
 from typing import Any, TypeAlias, overload
 
 import numpy as np
@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from strainwave import Drive, arguments
 from strainwave._core import Gear
-from strainwave.analysis.torsion_loop import SHARES_OF_TORQUE, loop_sigma, measured_torque, torsion_loop
+from strainwave.analysis.friction_curve import FRICTION_LAW, compared_speeds, friction_curve, friction_sigma
+from strainwave.analysis.torsion_loop import LAWS, SHARES_OF_TORQUE, loop_sigma, measured_torque, torsion_loop
 from strainwave.files.described import parameters, parts
 from strainwave.files.gear_file import at
 from strainwave.files.gear_set import GearSet
@@ -116,10 +117,11 @@ class Difference(Statement):
 
     Attributes:
         path: of a number, as "gear.stiffness.k1", of the model of a part, as "gear.stiffness", of a rating, or a place of the
-            torsion loop in words
+            torsion loop or the friction over the speed in words
         first, second: the numbers, or the models' names; None where one of them does not have it
         unit: of the numbers, empty for names
         sigma: standard deviation of the second less the first, as if they were independent; None unless both sets state one
+            and a measurement determines one of both numbers
 
     >>> import strainwave as sw
     >>> gear = sw.load("csg-25-100")
@@ -182,12 +184,50 @@ def differences(first: Model, second: Model) -> list[Difference]:
     if not (isinstance(first, GearSet) and isinstance(second, GearSet)):
         return differing
     for place, each in enumerate(differing):
-        if isinstance(each.first, float | int) and isinstance(each.second, float | int):
+        if (
+            isinstance(each.first, float | int)
+            and isinstance(each.second, float | int)
+            and _determined((each.path,), first, second)
+        ):
             one, other = first.sources[each.path].sigma(each.first), second.sources[each.path].sigma(each.second)
             if one is not None and other is not None:
                 differing[place] = replace(each, sigma=hypot(one, other))
     of_ratings = _ratings(first, second)
-    return _with_loop(differing, first, second) + of_ratings
+    return _with_loop(_with_friction(differing, first, second), first, second) + of_ratings
+
+
+def _determined(places: tuple[str, ...], first: GearSet, second: GearSet) -> bool:
+    """True if a measurement of one of two sets determines one of these numbers, or of these laws, as "gear.stiffness.".
+
+    The scatter of a catalogue is no measurement.
+    """
+    entries = [(path, entry) for each in (first, second) for path, entry in each.sources.items()]
+    measured = (path for path, entry in entries if entry.uncertainty is not None)
+    return any(path == place or (place.endswith(".") and path.startswith(place)) for path in measured for place in places)
+
+
+def _with_friction(differing: list[Difference], first: GearSet, second: GearSet) -> list[Difference]:
+    """Return differences with those of the friction at the input over the speed behind those of its law, if the laws differ."""
+    places = [place for place, each in enumerate(differing) if each.path.startswith(FRICTION_LAW.removesuffix("."))]
+    if not any(isinstance(differing[place].first, str) for place in places):
+        return differing
+    speeds = compared_speeds(first, second)
+    names = [f"friction at {speed * 30.0 / pi:.4g} rpm" for speed in speeds]
+    curves = [friction_curve(each.gear, speeds) for each in (first, second)]
+    sigmas = [friction_sigma(each, speeds) for each in (first, second)]
+    curve = _of_curves(names, ["N.m"] * len(names), curves, sigmas, _determined((FRICTION_LAW,), first, second))
+    return [*differing[: places[-1] + 1], *curve, *differing[places[-1] + 1 :]]
+
+
+def _of_curves(
+    names: Sequence[str], units: Sequence[str], curves: Sequence[Array], sigmas: Sequence[Array | None], is_determined: bool
+) -> list[Difference]:
+    """Return the differences of two curves, with standard deviations where both have them and a measurement determines one."""
+    stated = [each for each in sigmas if each is not None]
+    both = np.hypot(*stated).tolist() if len(stated) == 2 and is_determined else [None] * len(names)
+    first, second = (each.tolist() for each in curves)
+    rows = zip(names, first, second, units, both, strict=True)
+    return [Difference(name, one, other, unit, sigma) for name, one, other, unit, sigma in rows]
 
 
 def _with_loop(differing: list[Difference], first: GearSet, second: GearSet) -> list[Difference]:
@@ -199,16 +239,12 @@ def _with_loop(differing: list[Difference], first: GearSet, second: GearSet) -> 
     if len(torques) < 2 or not any(each.path.startswith(("gear.hysteresis", "gear.stiffness")) for each in differing):
         return differing
     torque = min(torques)
-    one, other = (torsion_loop(each.gear, torque).tolist() for each in (first, second))
+    curves = [torsion_loop(each.gear, torque) for each in (first, second)]
     sigmas = [loop_sigma(each, torque) for each in (first, second)]
-    both = None if sigmas[0] is None or sigmas[1] is None else np.hypot(sigmas[0], sigmas[1])
-    names = [(f"twist falling through {share * torque:.4g} N.m", "rad") for share in SHARES_OF_TORQUE] + [("loss", "J")]
-    loop = [
-        Difference(
-            f"loop to {torque:.4g} N.m: {name}", one[place], other[place], unit, None if both is None else float(both[place])
-        )
-        for place, (name, unit) in enumerate(names)
-    ]
+    places = [*(f"twist falling through {share * torque:.4g} N.m" for share in SHARES_OF_TORQUE), "loss"]
+    names = [f"loop to {torque:.4g} N.m: {place}" for place in places]
+    units = [*["rad"] * len(SHARES_OF_TORQUE), "J"]
+    loop = _of_curves(names, units, curves, sigmas, _determined(LAWS, first, second))
     return [*(each for each in differing if not each.path.startswith("gear.hysteresis.")), *loop]
 
 
@@ -265,7 +301,8 @@ def compare(first: Any, second: Any, names: Sequence[str] | None = None) -> Any:
     of the first, between its own on a straight line. Columns of other units are converted. Of models all numbers are compared,
     and which law stands at which place; of a gear and a drive the gear. Of two sets the ratings are compared, too. Elements of
     hysteresis are not unique: of two sets the torsion loop is compared in their place, to a torque that both were measured or
-    are rated to.
+    are rated to. Where laws of friction at the input differ, the torque is compared at 10 and 100 rpm, and at the largest speed
+    that both were measured or are rated to.
 
     Args:
         first, second: two recordings with the column `time`; or two of gear, drive and set

@@ -5,6 +5,7 @@ Elements of hysteresis are not unique: several sets of them make nearly one loop
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.gear_set import GearSet
 from strainwave.files.units import convert
-from strainwave.parameters import gear_numbers
+from strainwave.parameters import every
 
 Array = NDArray[np.float64]
 
@@ -22,6 +23,7 @@ SHARES_OF_TORQUE = (1.0, 0.5, 0.0, -0.5)  # of the largest torque, at which the 
 RATINGS_OF_TORQUE = ("peak_torque", "rated_torque")  # to which a gear is loaded that nobody measured, best first
 STEP_SIGMA = 0.1  # standard deviations of a number, between two loops
 MAX_STEP_SHARE = 1e-3  # of a number, between two loops
+NO_CHANGE = 1e-9  # of the largest value of a curve: a number that changes it less has no effect
 LAWS = ("gear.stiffness.", "gear.hysteresis.")
 
 
@@ -70,18 +72,35 @@ def loop_sigma(gear_set: GearSet, torque: float) -> Array | None:
 
     None if that of a number is not stated.
     """
+    return curve_sigma(gear_set, LAWS, lambda gear: torsion_loop(gear, torque))
+
+
+def curve_sigma(gear_set: GearSet, laws: tuple[str, ...], curve: Callable[[Any], Array]) -> Array | None:
+    """Return the standard deviations of a curve of a gear by those of the numbers of its laws, shape (n,).
+
+    None if that of a number is not stated on which the curve depends.
+
+    Args:
+        gear_set: the gear, with standard deviations
+        laws: beginnings of the paths of these numbers
+        curve: of a gear, shape (n,)
+    """
     gear: Any = gear_set.gear
-    values = {path: value for path, (value, _) in gear_numbers(gear).items() if path.startswith(LAWS)}
-    stated = {path: gear_set.sources[path].sigma(value) for path, value in values.items() if path in gear_set.sources}
-    sigmas = [stated.get(path) for path in values]
-    if not values or any(sigma is None for sigma in sigmas):
+    numbers = {path: each for name, each in every(gear).items() if (path := f"gear.{name}").startswith(laws)}
+    values = {path: each.value for path, each in numbers.items()}
+    if not values:
         return None
-    sigma, here = np.array(sigmas, float), torsion_loop(gear, torque)
-    slopes = np.zeros((len(here), len(sigma)))
+    here, sigma = curve(gear), np.zeros(len(values))
+    slopes = np.zeros((len(here), len(values)))
     for place, (path, value) in enumerate(values.items()):
-        if step := min(STEP_SIGMA * sigma[place], MAX_STEP_SHARE * abs(value)):
-            there = gear.replace({path.removeprefix("gear."): value + step})
-            slopes[:, place] = (torsion_loop(there, torque) - here) / step
+        stated = gear_set.sources[path].sigma(value) if path in gear_set.sources else None
+        largest = MAX_STEP_SHARE * (abs(value) or 1.0)
+        if step := largest if stated is None else min(STEP_SIGMA * stated, largest):
+            step = -step if value + step > numbers[path].high else step
+            slopes[:, place] = (curve(gear.replace({path.removeprefix("gear."): value + step})) - here) / step
+        if stated is None and np.abs(step * slopes[:, place]).max() > NO_CHANGE * np.abs(here).max():
+            return None
+        sigma[place] = stated or 0.0
     covariance = np.diag(sigma**2)
     if (saved := gear_set.covariance) is not None and (own := saved.among(list(values))) is not None:
         places = [list(values).index(path) for path in own.paths]

@@ -66,7 +66,6 @@ def _one_gear(
 ) -> bool:
     """Write and print the gear of all files. Return True if a check fails."""
     from strainwave.identification.identify import identify as identified
-    from strainwave.identification.results.drive import not_written
     from strainwave.report.first_screen import next_lines
     from strainwave.report.identify_files import identify_files, identify_summary
     from strainwave.report.provenance import Provenance
@@ -76,8 +75,6 @@ def _one_gear(
     files = identify_files(found, Provenance.of_this_command(read), accepted=accept, folder=out)
     write_report(out, files, "\n".join(identify_summary(found)))
     if "gear.toml" in files:
-        if lacking := not_written(found.files):
-            print(f"gear.toml: {found.gear_set.name}, {lacking}")
         print("\n".join(next_lines(found, out)))
     return bool(found.failed)
 

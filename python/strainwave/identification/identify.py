@@ -44,6 +44,7 @@ from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, C
 from strainwave.identification.results.gear_so_far import (
     GearSoFar,
     compared_path,
+    remark_on_ratio,
     with_kinematics,
     with_ratio,
     with_ratio_of_all,
@@ -388,9 +389,10 @@ def _fit_of_file(kind: Kind, file: Recognised, known: GearSoFar, mapping: Mapped
     before = replace(with_ratio(known, file), side=None if stated is None else stated.side)
     file = file.at_ratio(before.gear_set.gear.kinematics.ratio)
     try:
-        return kind.fit(file, before)
+        result, after = kind.fit(file, before)
     except (ValueError, FloatingPointError) as error:
         return not_used(file.path, error, file), before
+    return replace(result, remarks=(*filter(None, [remark_on_ratio(before, file)]), *result.remarks)), after
 
 
 # ---- Results ---------------------------------------------------------------------------------------------------------

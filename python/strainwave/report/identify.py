@@ -23,6 +23,7 @@ from strainwave.identification.results.combined_parameter import (
     difference,
     distance,
 )
+from strainwave.identification.results.drive import not_written
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.parameter_state import UNDETERMINED
 from strainwave.identification.results.pictures import SIGMA_OF_95_PERCENT, Picture, residual_of
@@ -117,7 +118,7 @@ def _verdict(found: Identified, accepted: bool) -> str:
         parts.append(f"the residual has a shape of RMS {listed(shapes)}")
     if found.unchecked:
         parts.append(f"nothing checks {' or '.join(f'the {name}, {value}' for name, value in found.unchecked.items())}")
-    sentence = "; ".join(parts)
+    sentence = "; ".join(filter(None, [not_written(found.files), *parts]))
     return f"{sentence[0].upper()}{sentence[1:]}.".replace(" %", f"{NO_BREAK_SPACE}%")
 
 

@@ -17,6 +17,7 @@ from strainwave.files import gear_file
 from strainwave.identification.checks.comparisons import AGREEMENT
 from strainwave.identification.identify import Identified
 from strainwave.identification.results.combined_parameter import CombinedParameter, distance, lines_of
+from strainwave.identification.results.drive import not_written
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, Check, FileEstimate, FileResult
 from strainwave.messages import listed, with_options
 from strainwave.report.identify import identify_report
@@ -157,8 +158,10 @@ def _csv_rows(found: Identified) -> Iterator[dict[str, Any]]:
 
 
 def identify_summary(found: Identified) -> Iterator[str]:
-    """Yield the result in lines, failed checks first."""
+    """Yield the result in lines, failed checks first, then what was measured in A."""
     yield from failed_lines(found.failed)
+    if in_current := not_written(found.files):
+        yield f"{found.gear_set.name}: {in_current}"
     points = [result for result in found.files if result.part_of]
     for result in found.files:
         if not result.part_of:

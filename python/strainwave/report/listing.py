@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
+from itertools import chain, combinations
 from math import inf, tau
 
 import numpy as np
@@ -20,6 +20,7 @@ from strainwave.files.gear_set import GearSet
 from strainwave.files.ratings import RatingCheck, check_ratings
 from strainwave.files.recording import Recording
 from strainwave.messages import one_line, shortened
+from strainwave.presentation import PAGE_WIDTH
 
 Row = Sequence[str]
 RAD_PER_ARCSEC = tau / 360.0 / 3600.0
@@ -83,6 +84,8 @@ def agreement_table(found: Sequence[Agreement]) -> str:
 def difference_table(found: Sequence[Difference]) -> str:
     """Return the places where two models differ, one to a line; differences in standard deviations where both sets state them.
 
+    Names for which the width of a page has no room have a line of their own.
+
     >>> print(difference_table([Difference("gear.damping", 4.0, 5.0, "N.m.s/rad", 0.5), Difference("motor", None, "dc")]))
                     first  second  unit       change    σ
     gear.damping        4       5  N.m.s/rad   +25 %  2.0
@@ -94,7 +97,11 @@ def difference_table(found: Sequence[Difference]) -> str:
         apart = "" if each.deviations is None else f"{abs(each.deviations):.1f}"
         rows.append((each.path, *each.texts, "" if each.unit == "1" else each.unit, change, apart))
     columns = 6 if any(apart for *_, apart in rows[1:]) else 5
-    return "\n".join(aligned([row[:columns] for row in rows], "<>><>>"[:columns]))
+    cells, sides = [row[:columns] for row in rows], "<>><>>"[:columns]
+    left = PAGE_WIDTH - max(map(len, aligned([("", *row[1:]) for row in cells], sides)))
+    names = [_printable(name) if len(name) > left else "" for name, *_ in cells]
+    lines = aligned([("" if name else row[0], *row[1:]) for name, row in zip(names, cells, strict=True)], sides)
+    return "\n".join(chain.from_iterable([name, line] if name else [line] for name, line in zip(names, lines, strict=True)))
 
 
 def stroke_table(first: Drive, second: Drive, stroke: float, tolerance: float) -> str:

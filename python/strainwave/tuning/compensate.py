@@ -117,6 +117,28 @@ class Compensated(Pictured, Reported):
 
     @property
     def verdict(self) -> str:
+        """What the compensation gains over the baseline, and whether the output does not settle."""
+        return f"{self._gain_in_words}{self._unsettled}"
+
+    @property
+    def _unsettled(self) -> str:
+        """A sentence on a controller under which the output does not settle, and the best one that does; else empty."""
+        if self.chosen.settles:
+            return ""
+        figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
+        settling = min(
+            (each for each in self.tried if each.settles and each.candidate != self.chosen.candidate),
+            key=lambda each: each.median(figure),
+            default=None,
+        )
+        other = "under none that was tried it does"
+        if settling is not None:
+            least = typeset.quantity(settling.median(figure), unit)
+            other = f"the best of those tried under which it does is the {settling.candidate.name}, {figure} {least}"
+        return f" At rest the output does not settle within {goals.REST_AFTER_MOTION:g} s; {other}."
+
+    @property
+    def _gain_in_words(self) -> str:
         """What the compensation gains over the baseline, in one sentence."""
         figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
         before = typeset.quantity(self.baseline.median(figure), unit)
@@ -295,12 +317,17 @@ def best_cascade(
 
 
 def _chosen(best: Judged, others: Sequence[Judged], goal: Goal) -> Judged:
-    """Return the controller of the fewest parts of those that gain about as much as the best; the baseline if none gains."""
+    """Return the controller of the fewest parts of those that gain about as much as the best; the baseline if none gains.
+
+    Of controllers that are as good as the best within the scatter over the drawn gears, one that settles is preferred.
+    """
     figure = goal.judged_by
     limit = (1.0 - MIN_GAIN) * best.median(figure)
     better = [each for each in others if each.median(figure) < limit and each.upper(figure) <= best.upper(figure)]
     if not better:
         return best
+    best_of_all = min(better, key=lambda each: each.median(figure))
+    better = [each for each in better if each.settles and each.is_as_good_as(best_of_all, figure)] or better
     enough = (1.0 + MIN_GAIN) * min(each.median(figure) for each in better)
     return min(
         (each for each in better if each.median(figure) <= enough), key=lambda each: (each.candidate.parts, each.median(figure))

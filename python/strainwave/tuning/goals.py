@@ -22,6 +22,7 @@ TORQUE_BAND_SHARE = 0.05  # of the torque, likewise
 MAX_STICKING_SPEED_SHARE = 0.1  # of the commanded speed: below it the output rests
 # Of the time, of a run that counts: an output that does not move has a ripple of 1, which is less than that of one that slips.
 MAX_REST_SHARE = 0.9
+SETTLING_TIME = "settling time"  # name of the figure
 UPPER_QUANTILE = 0.95  # of figures over drawn gears
 
 
@@ -92,7 +93,7 @@ class _ToAndFro:
             error_name: _rms(error[:, later]),
             "largest error": np.abs(error[:, later]).max(axis=1),
             "error at reversals": np.abs(error[:, near]).max(axis=1),
-            "settling time": _settling(time[rest] - self.end, error[:, rest], self.band),
+            SETTLING_TIME: _settling(time[rest] - self.end, error[:, rest], self.band),
             "effort of the motor": _rms(_effort(runs)[:, later]),
         }
 
@@ -141,11 +142,11 @@ def _goal_of_motion(name: str, judged_by: str, unit: str, motion: _ToAndFro, spe
         judged_by: unit,
         "largest error": unit,
         "error at reversals": unit,
-        "settling time": "s",
+        SETTLING_TIME: "s",
         "effort of the motor": effort_unit,
     }
     return Goal(
-        name, judged_by, motion.command, lambda runs, _: motion.figures(runs, judged_by), units, speed, "settling time",
+        name, judged_by, motion.command, lambda runs, _: motion.figures(runs, judged_by), units, speed, SETTLING_TIME,
         2.0 * np.pi / motion.period, motion.scale,
     )  # fmt: skip
 

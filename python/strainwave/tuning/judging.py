@@ -64,6 +64,16 @@ class Judged(Presented):
         """Return what 95 % of the drawn gears stay below."""
         return float(np.quantile(self._or_infinite(name), goals.UPPER_QUANTILE, method="higher"))
 
+    @property
+    def settles(self) -> bool:
+        """True if the output comes to rest on more than half of the drawn gears, or if its goal has no rest."""
+        return goals.SETTLING_TIME not in self.figures or bool(np.isfinite(self.median(goals.SETTLING_TIME)))
+
+    def is_as_good_as(self, other: Judged, name: str) -> bool:
+        """True if a figure exceeds that of another controller, on the same gears, by no more than the difference scatters."""
+        excess = self._or_infinite(name) - other._or_infinite(name)
+        return bool(np.isfinite(excess).all() and excess.mean() <= excess.std())
+
     def _or_infinite(self, name: str) -> Array:
         values = self.figures[name]
         return np.where(np.isnan(values), np.inf, values)

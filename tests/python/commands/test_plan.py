@@ -37,6 +37,7 @@ def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
     ("options", "message"),
     [
         (("--want", "gear.x"), 'the model has no parameter "gear.x"'),
+        (("--want", "rubbing"), "its parts are gear.kinematic_error, "),
         ((*FRICTION, "--noise", "friction"), "--noise friction: write it as --noise friction=0.002"),
         ((*FRICTION, "--noise", "voltag=1"), "noise: voltag is none of"),
         ((*FRICTION, "--resolution", "angle"), "--resolution angle: write it as --resolution angle=1e-5"),

@@ -24,7 +24,7 @@ from strainwave.identification.results.pictures import Look, Picture
 from strainwave.parameters import gear_numbers
 from strainwave.report import identify_figures
 from strainwave.report.identify import identify_report
-from strainwave.report.identify_files import failed_lines, identify_files
+from strainwave.report.identify_files import failed_lines, identify_files, identify_summary
 from strainwave.report.parameter_names import name_of
 from strainwave.report.provenance import Provenance
 from strainwave.workbench.page import BEGIN, END
@@ -351,3 +351,15 @@ def test_checks_with_one_remedy_name_it_once(found: Identified) -> None:
     assert "are among the failed checks" in text_of(html)
     lines = ["FAILED: a, b: they differ", "FAILED: a, c: they differ", "  what to do: compare them"]
     assert list(failed_lines(failed)) == lines
+
+
+def test_what_was_measured_in_current_is_stated_first() -> None:
+    file = FileResult("log.csv", None, "a law", (told(COULOMB, 0.5, 0.01, "N.m").in_current(),))
+    found = Identified(START, (file,), combine((file,)), START, ())
+    words = (
+        "friction measured in A, as the torque constant is not known: give --constant torque_constant=NUMBER, or the gear "
+        "keeps friction of the start set"
+    )
+    assert next(identify_summary(found)) == f"{START.name}: {words}"
+    verdict = next(line for line in identify_report(found).splitlines() if 'class="verdict"' in line)
+    assert verdict.startswith(f'<p class="verdict">{words[0].upper()}{words[1:]}; the file determines 1 parameter')

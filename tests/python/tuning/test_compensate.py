@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ import strainwave as sw
 from strainwave.files.entries import Entry
 from strainwave.tuning.candidates import baseline, candidates
 from strainwave.tuning.cascade import Plant, Setting
-from strainwave.tuning.compensate import _drawn, _of_the_drive, _remarks, best_cascade, goal_of
+from strainwave.tuning.compensate import _chosen, _drawn, _of_the_drive, _remarks, best_cascade, goal_of
 from strainwave.tuning.goals import position, smooth, speed
 from strainwave.tuning.judging import Judged, judged
 from strainwave.tuning.loops import sharpest
@@ -237,3 +238,43 @@ def test_a_travel_may_have_a_unit(name: str) -> None:
     plant = replace(plant, drive=plant.drive.replace(load=sw.loads.TorsionSpring(inertia=0.5, stiffness=1e3)))
     by_text, by_number = (goal_of(name, plant, travel, None) for travel in ("2 deg", np.radians(2.0)))
     assert by_text.command == by_number.command
+
+
+def with_figures(name: str, error: list[float], settling: list[float]) -> Judged:
+    """Return a controller of known figures on drawn gears."""
+    candidate = replace(baseline(Plant.of(STATED, 1e-3, 0.0), Setting(0.5, "input", 0.5)), name=name)
+    figures = {"tracking error": np.array(error), "settling time": np.array(settling)}
+    return Judged(candidate, figures, {each: float(values[0]) for each, values in figures.items()})
+
+
+CASCADE = with_figures("cascade", [100.0, 101.0, 102.0], [0.0, 0.0, 0.0])
+OSCILLATING = with_figures("oscillating", [40.0, 41.0, 42.0], [np.inf, np.inf, 0.1])
+
+
+@pytest.mark.parametrize(
+    ("error", "settling", "name"),
+    [
+        ([50.0, 38.0, 50.0], [0.0, 0.0, 0.0], "other"),  # 5 more, with a scatter of 5.7
+        ([44.0, 45.0, 46.0], [0.0, 0.0, 0.0], "oscillating"),  # worse on each gear
+        ([47.0, 40.0, 47.0], [np.inf, np.inf, 0.1], "oscillating"),
+        ([47.0, np.nan, 40.0], [0.0, np.nan, 0.0], "oscillating"),
+    ],
+)
+def test_of_controllers_that_gain_as_much_one_that_settles_is_chosen(
+    error: list[float], settling: list[float], name: str
+) -> None:
+    others = [OSCILLATING, with_figures("other", error, settling)]
+    goal = position(0.03, 0.02, "A")
+    assert _chosen(CASCADE, others, goal).candidate.name == name
+
+
+def test_a_controller_under_which_the_output_does_not_settle_is_named_with_one_under_which_it_does() -> None:
+    other = with_figures("other", [60e-6, 61e-6, 62e-6], [0.0, 0.0, 0.0])
+    nothing: Any = ()
+    goal = position(0.03, 0.02, "A")
+    found = sw.tuning.Compensated(STATED, goal, (OSCILLATING, other), CASCADE, OSCILLATING, 3, nothing, (), (), ())
+    words = "does not settle within 0.5 s; the best of those tried under which it does is the other, tracking error 61"
+    assert words in found.verdict
+    assert found._headline() == found.verdict
+    assert "under none that was tried it does" in replace(found, tried=(OSCILLATING,)).verdict
+    assert "settle" not in replace(found, chosen=other).verdict

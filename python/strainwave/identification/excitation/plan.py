@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from strainwave.identification.excitation.candidates import (
 from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import is_uncertain
 from strainwave.messages import listed, shortened
-from strainwave.parameters import Parameter, every, parameters as chosen
+from strainwave.parameters import Parameter, every, parameters as chosen, unknown as unknown_path
 from strainwave.presentation import Pictured, Presented, Row, counted
 from strainwave.progress import Progress, in_turn
 from strainwave.simulation.scenario import Scenario
@@ -45,6 +45,10 @@ MIN_SPEED_SHARE = 1e-3  # of the largest speed: the lowest that is held steady, 
 SAMPLE_TIME = 2e-3  # s, of a run
 MAX_RELATIVE_SIGMA = 0.1  # of a parameter; if it is known less well, the reason is given
 MAX_CORRELATION = 0.9  # of estimates that are determined separately
+MIN_GAIN = 0.1  # of the standard deviation of a wanted parameter; a plan that takes off less gains little
+PARTS_OF_WORD = {"friction": ("friction_input",), "torsion": ("stiffness", "hysteresis")}  # by the experiment
+LOOP_RATINGS = ("rated_torque",)  # to which a loop goes, unless a person gives another torque
+TORQUE_RATINGS = ("peak_torque", "momentary_torque", "ratcheting_torque", "buckling_torque")  # that no loop may exceed
 
 Known = GearSet | Fit | Mapping[str, float]
 
@@ -89,6 +93,13 @@ class Expectation(Presented):
     wanted: bool
     why: str
 
+    @property
+    def gain(self) -> float:
+        """Relative reduction of the standard deviation by the plan [1]; 1 if only the plan determines the parameter."""
+        if not np.isfinite(self.after):
+            return 0.0
+        return 1.0 - self.after / self.before if np.isfinite(self.before) else 1.0
+
 
 @dataclass(frozen=True)
 class ExperimentPlan(Pictured):
@@ -105,6 +116,7 @@ class ExperimentPlan(Pictured):
     (60.0, 0.5)
     """
 
+    _title: ClassVar[str] = "Plan"
     steps: tuple[PlannedMeasurement, ...]
     expectations: tuple[Expectation, ...]
     notes: tuple[str, ...]
@@ -124,17 +136,27 @@ class ExperimentPlan(Pictured):
     def _headline(self) -> str:
         if not self.steps:
             return "no measurement within the limits adds information"
-        return f"{counted(len(self.steps), 'measurement')}, {self.duration / 60.0:.3g} min"
+        duration = f"{counted(len(self.steps), 'measurement')}, {self.duration / 60.0:.3g} min"
+        wanted = [each for each in self.expectations if each.wanted]
+        gains = not wanted or any(each.gain >= MIN_GAIN for each in wanted)
+        return duration if gains else f"{duration}; gains less than {100.0 * MIN_GAIN:.0f} % for all that is wanted"
 
     def _rows(self) -> Iterator[Row]:
         for number, step in enumerate(self.steps, start=1):
-            alone = f"; determines by itself {listed(map(str, step.determines))}" if step.determines else ""
+            alone = f"; determines by itself {', '.join(map(str, step.determines))}" if step.determines else ""
             yield Row(f"measurement {number}", f"{step.repeats} x {step.words}{alone}")
         for each in self.expectations:
             before = "unknown" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
-            yield Row(each.path, each.value, each.unit, each.after, f"was {before}")
+            if np.isinf(each.after):
+                yield Row(each.path, each.value, each.unit, note="stays unknown")
+            else:
+                yield Row(each.path, each.value, each.unit, each.after, f"was {before}")
 
     def _remarks(self) -> Iterator[str]:
+        for each in self.expectations:
+            if self.steps and each.wanted and np.isfinite(each.after) and each.gain < MIN_GAIN:
+                known = f"known to ± {typeset.quantity(each.before, each.unit)} before"
+                yield f"{each.path}: {known}; the plan reduces that by {100.0 * each.gain:.2g} % only"
         yield from (f"{each.path}: {each.why}" for each in self.expectations if each.why)
         yield from self.notes
 
@@ -185,7 +207,7 @@ def plan_experiments(
     Args:
         model: a set, whose spreads, uncertainties and ratings count; a drive, for motion too; or a gear
         wanted: paths of the parameters to know, as "gear.friction_input.coulomb" of a set or a drive, "friction_input.coulomb"
-            of a gear
+            of a gear; or parts, by their path or name; "friction" is the one at the input, "torsion" spring and hysteresis
         experiments: what can be made: "friction" (steady speeds), "torsion" (loops at either side), "motion" (runs of the
             drive)
         time: what all measurements may take together [s]
@@ -195,7 +217,8 @@ def plan_experiments(
         known: what is known before: a set, a fit, or standard deviations by path; of a set as model its own, if not given
         speed_limit: of the input [rad/s]; with ratings of a set the smaller counts
         lowest_speed: that can be held steady [rad/s]; a thousandth of the limit if not given
-        torque_limit: at the output [N.m]; with ratings of a set the smaller counts
+        torque_limit: at the output [N.m]; with the ratings of a set that no loop may exceed the smaller counts. Without it,
+            the rated torque of a set
         noise: standard deviations: "friction" of the torque at one speed, at the input [N.m]; "torsion" and "input_torsion" of
             a sample of a loop at the output and at the input [N.m]; of a sample of each column of a log by its name, which
             also names the columns recorded, "input_angle" and "current" if none. If not given, 1 % of the largest value,
@@ -315,9 +338,22 @@ def _named(name: str, whole: Any, paths: Sequence[str]) -> list[Parameter]:
     """Return the parameters that an argument names by themselves, by their sequence or by their part."""
     wanted: list[str] = []
     for path in arguments.names(name, paths):
-        inside = [each for each in every(whole) if each.startswith(f"{path}.")]
-        wanted += inside or [path]
+        for place in _places(path, whole):
+            wanted += [each for each in every(whole) if each.startswith(f"{place}.")] or [place]
     return chosen(name, whole, wanted)
+
+
+def _places(path: str, whole: Any) -> list[str]:
+    """Return the paths that a word names: itself, the parts of an experiment, or the one part of this name."""
+    known = every(whole)
+    parts = [each for each in dict.fromkeys(number.rpartition(".")[0] for number in known) if each]
+    if path in (*known, *parts) or path in {number.split("[")[0] for number in known}:
+        return [path]
+    names = PARTS_OF_WORD.get(path, (path,))
+    own = [part for part in parts if part.rpartition(".")[2] in names]
+    if not own or (path not in PARTS_OF_WORD and len(own) > 1):
+        raise ValueError(f"{unknown_path(path, known)}; its parts are {', '.join(parts)}")
+    return own
 
 
 def _noise(noise: Mapping[str, float], whole: Any) -> dict[str, float]:
@@ -348,8 +384,8 @@ def _limits(model: object, kinds: Sequence[str], speed: float | None, lowest: fl
     torques = [] if torque is None else [arguments.number("torque_limit", torque, "N.m", "(]", 0.0, MAX_TORQUE)]
     steady = ("maximum_input_speed", "average_input_speed")  # a table runs at each speed for long
     speeds += [ratings[name].to("rad/s").value for name in steady if name in ratings]
-    strong = ("peak_torque", "momentary_torque", "ratcheting_torque", "buckling_torque")
-    torques += [ratings[name].to("N.m").value for name in strong if name in ratings]
+    allowed = TORQUE_RATINGS if torques else (*LOOP_RATINGS, *TORQUE_RATINGS)
+    torques += [ratings[name].to("N.m").value for name in allowed if name in ratings]
     if "friction" in kinds and not speeds:
         raise ValueError("speed_limit is needed for friction: the model has no rating of the input speed")
     if "torsion" in kinds and not torques:

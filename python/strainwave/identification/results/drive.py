@@ -115,9 +115,10 @@ def not_written(files: Sequence[FileResult]) -> str:
     if not parts:
         return ""
     kept = [part for part in parts if part != "load"]
+    without = f"keeps {listed(kept)} of the start set" if kept else "has no load"
     return (
-        f"without the measured {listed(parts)}: the torque constant is not known, and these numbers are in A "
-        f"(give --constant torque_constant=NUMBER){f'; the gear keeps {listed(kept)} of the start set' if kept else ''}"
+        f"{listed(parts)} measured in A, as the torque constant is not known: give --constant torque_constant=NUMBER, or the "
+        f"gear {without}"
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -29,6 +29,7 @@ IN_CURRENT = "in A"  # law of an estimate without the torque constant
 ASSUMED_BY_RECORDER = "it is the stiffness that the recorder assumed, and was not measured"
 BEHIND_GEAR = "the torque was measured behind the gear: it contains no friction of it"
 TOO_UNCERTAIN = "standard deviation exceeds half the value"
+WAVE_UNDETERMINED = "the size of its wave is not determined"
 MAX_UNEXPLAINED = 0.5  # of the signal on held-out data: a model that leaves more explains nothing
 MAX_SHARE_OF_PLAIN = 1.02  # of the error of plain least squares: a model that leaves more is no answer
 MAX_SHARE_VIBRATING = 1.1  # likewise, if sliding in the pass band is predicted to MAX_IN_BAND: both leave vibrations
@@ -224,6 +225,23 @@ class FileEstimate(Presented):
         return f"{self.label} = {uncertain_quantity(self.value, self.sigma, self.unit)}, {self.state}"
 
 
+def with_waves(estimates: Sequence[FileEstimate]) -> tuple[FileEstimate, ...]:
+    """Return the estimates, with a phase not identified if the size of its wave is not."""
+    open_ones = {each.path for each in estimates if each.state == "not identified"}
+    return tuple(
+        replace(each, why=WAVE_UNDETERMINED)
+        if each.is_phase and each.state == "identified" and open_ones & _sizes_of_wave(each.path)
+        else each
+        for each in estimates
+    )
+
+
+def _sizes_of_wave(phase: str) -> set[str]:
+    """Return the paths that the size of the wave of a phase may have."""
+    part, _, name = phase.rpartition(".")
+    return {f"{part}.{name.replace('phase', size)}" for size in ("amplitude", "torque")}
+
+
 @dataclass(frozen=True, eq=False)
 class FileResult(ComparedByFields, Pictured):
     """Result of one file.
@@ -267,6 +285,9 @@ class FileResult(ComparedByFields, Pictured):
     bend: float = 0.0
     between: Fit | None = None
     unchecked: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "estimates", with_waves(self.estimates))
 
     @property
     def fits(self) -> tuple[Fit, ...]:

@@ -15,7 +15,7 @@ from strainwave.files.recording import Recording
 from strainwave.identification.candidates.friction import STEADY_NUMBERS
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import FileEstimate, with_waves
 from strainwave.messages import one_line
 from strainwave.parameters import gear_numbers, plain
 from strainwave.questions import TORQUE_CONSTANT, QuestionError
@@ -26,6 +26,7 @@ EXACT_SPREAD = 1e-9  # relative standard deviation of a number that is stated as
 START_SPREAD = 0.5  # relative standard deviation of a number of a set that states none (assumed)
 MODULATING_LAWS = ("cyclic", "thermal")  # laws that vary another one
 KINEMATICS_PATHS = "gear.kinematics."
+SAME_TEETH = "that of the same teeth with the other spline fixed"
 RATIO_TOLERANCE = 1e-9  # relative: two ratios that differ by less are one
 
 
@@ -86,6 +87,7 @@ class GearSoFar:
             estimates: of the fit
             name: of the file
         """
+        estimates = with_waves(estimates)
         states = {part: {each.state for each in estimates if is_of(each.path, {part})} for part in parts}
         laws = {part: getattr(gear, part) for part, of_part in states.items() if of_part != {"not identified"}}
         entries = {each.path: source_of(each, name) for each in estimates}
@@ -259,7 +261,8 @@ def with_ratio_of_all(start: GearSet, files: Sequence[Recognised]) -> GearSet:
     ratios = {file.constants.get("ratio") for file in files}
     if len(ratios) != 1 or (ratio := ratios.pop()) is None:
         return start
-    return _with_kinematics(start, geared(start.gear, ratio).kinematics, "ratio given with the files")
+    other = geared(start.gear, ratio).kinematics
+    return _with_kinematics(start, other, _source_of_ratio(start, other, "ratio given with the files"))
 
 
 def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
@@ -267,7 +270,8 @@ def with_ratio(known: GearSoFar, file: Recognised) -> GearSoFar:
     if "ratio" not in file.constants:
         return known
     other = geared(known.gear_set.gear, file.constants["ratio"]).kinematics
-    return replace(known, gear_set=_with_kinematics(known.gear_set, other, "ratio given with the file"))
+    source = _source_of_ratio(known.gear_set, other, "ratio given with the file")
+    return replace(known, gear_set=_with_kinematics(known.gear_set, other, source))
 
 
 def with_kinematics(known: GearSoFar, of: GearSet) -> GearSoFar:
@@ -288,10 +292,13 @@ def _with_kinematics(gear_set: GearSet, other: Any, of: GearSet | str) -> GearSe
 def geared(gear: Any, ratio: float) -> Any:
     """Return the gear with another ratio; its output turns the same way as before.
 
-    It is a strain wave gear if whole teeth give this ratio, else a plain ratio.
+    It is the same gear if its teeth give this ratio, too, with the other spline fixed. Else it is a strain wave gear if whole
+    teeth give this ratio, or a plain ratio.
     """
     if abs(abs(ratio) - abs(gear.kinematics.ratio)) < RATIO_TOLERANCE * abs(ratio):
         return gear
+    if (other := _other_spline_fixed(gear.kinematics)) is not None and abs(other.ratio - ratio) < RATIO_TOLERANCE * abs(ratio):
+        return gear.replace(kinematics=other)
     size = abs(ratio)
     if abs(size - round(size)) > RATIO_TOLERANCE * size or round(size) < 2:
         return gear.replace(kinematics=kinematics.PlainRatio(reduction=size))
@@ -300,3 +307,23 @@ def geared(gear: Any, ratio: float) -> Any:
     fixed = "circular_spline" if is_backwards else "flexspline"
     strain_wave = kinematics.StrainWave(flexspline_teeth=teeth, circular_spline_teeth=teeth + 2, fixed=fixed)
     return gear.replace(kinematics=strain_wave)
+
+
+def _other_spline_fixed(law: Any) -> Any:
+    """Return the teeth of a strain wave gear with its other spline fixed; None for a plain ratio."""
+    if not isinstance(law, kinematics.StrainWave):
+        return None
+    return law.replace(fixed="flexspline" if law.fixed == "circular_spline" else "circular_spline")
+
+
+def _source_of_ratio(gear_set: GearSet, other: Any, given: str) -> str:
+    """Return the source of a ratio that a person gave; it states if the teeth stay and the other spline is fixed."""
+    if other != _other_spline_fixed(gear_set.gear.kinematics):
+        return given
+    return f"{given}: {SAME_TEETH}, the {other.fixed.replace('_', ' ')}"
+
+
+def remark_on_ratio(known: GearSoFar, file: Recognised) -> str:
+    """Return that the ratio given with a file is that of the teeth of the set with its other spline fixed; empty if not."""
+    entry = known.gear_set.sources.get(f"{KINEMATICS_PATHS}flexspline_teeth")
+    return entry.source if entry is not None and "ratio" in file.constants and SAME_TEETH in entry.source else ""

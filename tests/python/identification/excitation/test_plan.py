@@ -123,7 +123,7 @@ def test_what_friction_at_speed_cannot_tell_is_named() -> None:
     assert np.isinf(breakaway.after)
     assert "depends on it" in breakaway.why
     assert np.isfinite(plan["friction_input.coulomb"].after)
-    assert plan.to_dict()["rows"]["friction_input.breakaway"]["note"] == "was unknown"
+    assert plan.to_dict()["rows"]["friction_input.breakaway"]["note"] == "stays unknown"
 
 
 def test_steps_of_a_plan_state_what_each_determines_by_itself() -> None:
@@ -227,6 +227,42 @@ def test_spreads_and_ratings_of_a_set_count() -> None:
         gear_set, ["gear.friction_input.viscous"], experiments=["friction"], speed_limit=1e4
     )
     assert max(speeds(fast)) == pytest.approx(3500.0 * np.pi / 30.0)
+
+
+def test_loops_go_to_the_rated_torque_unless_a_person_gives_more() -> None:
+    rated, peak = (sw.GearSet.read("csg-25-100").ratings[name].to("N.m").value for name in ("rated_torque", "peak_torque"))
+    notes = [
+        sw.identification.plan_experiments(
+            sw.GearSet.read("csg-25-100"), ["torsion"], experiments=["torsion"], time=1.0, torque_limit=limit
+        ).notes[0]
+        for limit in (None, 1e3)
+    ]
+    assert notes == [f"output torque to {limit:g} N.m" for limit in (rated, peak)]
+
+
+@pytest.mark.parametrize(
+    ("word", "parts"),
+    [
+        ("friction", {"gear.friction_input"}),
+        ("torsion", {"gear.stiffness", "gear.hysteresis"}),
+        ("friction_output", {"gear.friction_output"}),
+    ],
+)
+def test_a_part_is_wanted_by_its_name_or_by_that_of_its_experiment(word: str, parts: set[str]) -> None:
+    plan = sw.identification.plan_experiments(sw.GearSet.read("csg-25-100"), [word], experiments=["friction"], time=40.0)
+    assert {each.path.rpartition(".")[0] for each in plan.expectations if each.wanted} == parts
+
+
+def test_a_plan_that_gains_little_states_it() -> None:
+    known = {"friction_input.coulomb": 1e-6, "friction_input.viscous": 1e-8}
+    little, much = (
+        friction_plan(COULOMB, LINE, known={path: scale * sigma for path, sigma in known.items()}, time=80.0)
+        for scale in (1.0, 1e3)
+    )
+    assert little._headline().endswith("; gains less than 10 % for all that is wanted")
+    assert sum("the plan reduces that by" in remark for remark in little._remarks()) == 2
+    assert "gains less" not in f"{much}"
+    assert "reduces that" not in f"{much}"
 
 
 @pytest.mark.slow("identification")

@@ -127,17 +127,18 @@ def test_other_loads_of_other_logs_are_stated(folder: Path) -> None:
 @pytest.mark.slow("identification")
 def test_numbers_in_current_are_not_written_and_this_is_stated(folder: Path) -> None:
     found = sw.identify(START, [folder / "joint.csv"], mapping=mapping(ratio=100.0)).gear_set
-    lacking = "ithout the measured load, friction: the torque constant is not known, and these numbers are in A"
+    lacking = "oad, friction measured in A, as the torque constant is not known: "
     assert found.load is None
     assert found.gear.friction_input == sw.load(START).friction_input
-    assert f"W{lacking}" in found.note
+    assert f"L{lacking}" in found.note
     options = ("--joint", "1", "--constant", "ratio=100", "--out", "amperes")
     result = strainwave("identify", START, "joint.csv", *options, folder=folder)
-    assert f"gear.toml: gear of joint 1 of joint, w{lacking}" in result.stdout
-    assert "; the gear keeps friction of the start set\n" in result.stdout
+    first = result.stdout.splitlines()[0]
+    assert first.startswith(f"gear of joint 1 of joint: l{lacking}")
+    assert first.endswith(", or the gear keeps friction of the start set")
     page = (folder / "amperes" / "report.html").read_text()
     assert "<h1>gear of joint 1 of joint</h1>" in page
-    assert f"W{lacking}" in page
+    assert f'<p class="verdict">L{lacking}' in page
 
 
 @pytest.mark.slow("identification")

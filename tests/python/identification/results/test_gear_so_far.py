@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
 import strainwave as sw
+from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.results.file_result import FileEstimate
-from strainwave.identification.results.gear_so_far import GearSoFar
+from strainwave.identification.results.gear_so_far import GearSoFar, geared
 
 
 def test_an_estimate_that_is_no_number_of_the_gear_determines_none_of_it() -> None:
@@ -31,3 +34,35 @@ def test_breakaway_that_follows_coulomb_is_assumed_and_as_uncertain_by_either_wa
     assert by_fit.determined_by == by_parts.determined_by == {coulomb: "log.csv"}
     assert by_fit.gear_set.sources[breakaway].source.startswith("assumed: ")
     assert by_fit.gear_set.sources[breakaway].uncertainty == 1e-3
+
+
+@pytest.mark.parametrize(
+    ("ratio", "teeth", "fixed"),
+    [(101.0, 200, "flexspline"), (-101.0, 202, "circular_spline"), (80.0, 160, "circular_spline")],
+)
+def test_teeth_that_give_a_stated_ratio_with_the_other_spline_fixed_stay(ratio: float, teeth: int, fixed: str) -> None:
+    law = geared(sw.load("csg-14-100"), ratio).kinematics
+    assert (law.flexspline_teeth, law.circular_spline_teeth, law.fixed) == (teeth, teeth + 2, fixed)
+
+
+def test_it_is_remarked_that_the_other_spline_is_fixed() -> None:
+    speed = np.geomspace(2.0, 200.0, 8)
+    table = sw.Recording({"speed": speed, "torque": 0.05 + 3e-4 * speed}, {"speed": "rad/s", "torque": "N.m"})
+    own, given = (
+        sw.identify("csg-14-100", {"friction": table}, mapping=FileMapping(constants=constants))
+        for constants in ({}, {"ratio": 101.0})
+    )
+    remark = "ratio given with the files: that of the same teeth with the other spline fixed, the flexspline"
+    assert remark in given.files[0].remarks
+    assert given.gear_set.sources["gear.kinematics.flexspline_teeth"].source == remark
+    assert remark not in own.files[0].remarks
+
+
+def test_a_phase_of_a_wave_of_unknown_size_determines_nothing_of_the_gear() -> None:
+    before = sw.GearSet.read("csg-20-100")
+    size, phase = (
+        FileEstimate(f"gear.kinematic_error.{name}[0]", unit, 0.1, 1e-3, "", why)
+        for name, unit, why in (("amplitude", "rad", "standard deviation exceeds half the value"), ("phase", "rad", ""))
+    )
+    known = GearSoFar(before).with_fit(before.gear, ["kinematic_error"], [size, phase], "a.csv")
+    assert known.determined_by == {}

@@ -16,7 +16,7 @@ from strainwave.identification.fitting.fit import fit
 from strainwave.identification.fitting.influence import InfluenceOfKept
 from strainwave.identification.fitting.unknowns import Unknown
 from strainwave.identification.identify import Identified
-from strainwave.identification.results.file_result import FileEstimate
+from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before
 from strainwave.identification.results.steady_friction import friction_at, sizes_of
@@ -285,3 +285,19 @@ def test_a_gear_with_bristles_keeps_them_when_a_table_leaves_the_division_of_fri
     assert isinstance(law, sw.friction.LuGre)
     assert (law.bristle_stiffness, law.breakaway) == (40.0, law.coulomb)
     assert law.steady(10.0) == pytest.approx(0.073, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("phase", "size"),
+    [
+        ("gear.kinematic_error.phase[2]", "gear.kinematic_error.amplitude[2]"),
+        ("gear.friction_input.detent_phase", "gear.friction_input.detent_torque"),
+    ],
+)
+def test_a_phase_is_determined_only_if_the_size_of_its_wave_is(phase: str, size: str) -> None:
+    def states(why: str) -> list[str]:
+        estimates = (FileEstimate(size, "rad", 1e-5, 4e-6, "", why), FileEstimate(phase, "rad", 0.3, 0.1, ""))
+        return [each.state for each in FileResult("a.csv", estimates=estimates).estimates]
+
+    assert states("standard deviation exceeds half the value") == ["not identified", "not identified"]
+    assert states("") == ["identified", "identified"]
