@@ -70,6 +70,8 @@ ELSEWHERE = {
         "drive_model.hpp": MODEL,
         "files/datasheet.py": SHEET,
         "orders/two_encoders.py": "orders that two encoders tell are of this form",
+        "orders/over_temperature.py": "orders that two encoders tell are of this form",
+        "kinematic_error/temperature_dependent.hpp": "what it varies by default",
         "kinematic_error/scaled.hpp": "what it scales by default",
         "kinematic_error/misalignment.hpp": "what a misalignment is to leading order",
         "fault/misalignment.hpp": "what a misalignment is to leading order",
@@ -79,7 +81,11 @@ ELSEWHERE = {
         "diagnose/inversion.py": "an error of every order, by which a drive is probed",
         "diagnose/smallest_error.py": "an error of one order, by which a drive is probed",
     },
-    "ToothWear": {"spline_orders.py": "its waves have the orders of the splines"},
+    "ToothWear": {
+        "spline_orders.py": "its waves have the orders of the splines",
+        "diagnose/wear.py": "whose amounts it fits to tests of a gear",
+    },
+    "Growing": {"diagnose/wear.py": "whose scale it fits to tests of a gear"},
     "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
@@ -100,6 +106,10 @@ ELSEWHERE = {
         "structure/staged.hpp": "what its springs do where nothing else is said",
     },
     "Scaled": {"parameter_drive.hpp": BOUND_TO_ANY},
+    "TemperatureDependent": {
+        "parameter_drive.hpp": BOUND_TO_ANY,
+        "orders/over_temperature.py": "fitted to records at several temperatures",
+    },
     "Viscous": {
         "identification/experiments/friction_table.py": "by which a place without friction is known",
     },
@@ -214,6 +224,7 @@ ELSEWHERE = {
         "identification/kinds/between_encoders.py": REACHED,
     },
     "Cubic": {
+        "stiffness/asymmetric.hpp": "the spring at positive twist by default",
         "stiffness/backlash.hpp": "the spring behind its play by default",
     },
     "MultiCompliance": {"hysteresis/frictional_windup.hpp": "the two springs that it has friction between"},

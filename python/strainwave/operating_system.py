@@ -110,10 +110,12 @@ else:
             os.killpg(pid, signal.SIGKILL)
 
     def limit_process(seconds: int, size: int) -> None:
-        """Limit the processor time [s] and the memory [bytes] of this process and of those that it starts."""
+        """Limit the processor time [s] and, but on macOS, the memory [bytes] of this process and of those that it starts."""
         for limit, wanted in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, size)):
-            _, hard = resource.getrlimit(limit)
-            resource.setrlimit(limit, (wanted if hard == resource.RLIM_INFINITY else min(wanted, hard), hard))
+            soft, hard = resource.getrlimit(limit)
+            lowest = min(each for each in (soft, hard, wanted) if each != resource.RLIM_INFINITY)
+            with suppress(ValueError, OSError):  # macOS refuses a limit of addresses
+                resource.setrlimit(limit, (lowest, hard))
 
     def is_orphan(parent: int) -> bool:
         """True if the process that started this one, its parent, has ended."""

@@ -143,6 +143,15 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             depth_sensitivity=100.0,
         )
     },
+    "temperature_dependent": {
+        "kinematic_error": sw.kinematic_error.TemperatureDependent(
+            law=sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=[0.3, -1.0]),
+            order=[2.0, 2.02],
+            change=[2e-6, 1e-6],
+            phase=[0.5, 1.0],
+            temperature=313.15,
+        )
+    },
     "regimes": {
         "hysteresis": sw.hysteresis.Regimes(
             positive_unloading=4e3,

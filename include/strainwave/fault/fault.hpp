@@ -48,8 +48,17 @@ constexpr Change<S> add_wave(const char* place, const char* law, const S& order,
     return {place, "amplitude", Kind::wave, amplitude, law, "phase", phase, order};
 }
 
+/// Every name that a law of friction has for a dry level or a loss per torque.
+inline constexpr Array<const char*, 14> dry_quantities{{"coulomb", "breakaway", "quadratic", "linear", "constant", "cosine", "sine",
+                                                        "level", "driving_forward", "driving_reverse", "backdriving_forward",
+                                                        "backdriving_reverse", "average_loss", "difference_loss"}};
+/// Every name that a law of stiffness has for a stiffness, or for a coefficient in proportion to it.
+inline constexpr Array<const char*, 8> stiffness_quantities{
+    {"k", "k1", "k2", "k3", "a1", "a3", "flexspline_stiffness", "wave_generator_stiffness"}};
+
 inline constexpr const char* error_place = "gear.kinematic_error";
 inline constexpr const char* spring_place = "gear.stiffness";
+inline constexpr const char* mesh_place = "gear.friction_mesh";
 inline constexpr const char* variation_place = "gear.stiffness_variation";
 inline constexpr const char* motor_place = "motor";
 

@@ -40,13 +40,9 @@ struct LubricationLoss {
 
     template <class Visit>
     constexpr void changes(const Facts<S>&, Visit&& visit) const {
-        // Every name that a law of friction has for a dry level or a loss per torque.
-        constexpr Array<const char*, 14> dry{{"coulomb", "breakaway", "quadratic", "linear", "constant", "cosine", "sine", "level",
-                                              "driving_forward", "driving_reverse", "backdriving_forward", "backdriving_reverse",
-                                              "average_loss", "difference_loss"}};
-        constexpr Array<const char*, 3> places{{"gear.friction_input", "gear.friction_mesh", "gear.friction_output"}};
+        constexpr Array<const char*, 3> places{{"gear.friction_input", mesh_place, "gear.friction_output"}};
         for (const char* place : places.item) {
-            for (const char* quantity : dry.item) visit(scale(place, quantity, S(1.0) + severity * dry_rise));
+            for (const char* quantity : dry_quantities.item) visit(scale(place, quantity, S(1.0) + severity * dry_rise));
             visit(scale(place, "stribeck_speed", S(1.0) + severity * stribeck_rise));
             visit(scale(place, "viscous", S(1.0) - severity * viscous_fall));
             visit(scale(place, "viscous_torque", S(1.0) - severity * viscous_fall));

@@ -3,6 +3,7 @@
 #include <strainwave/kinematic_error/misalignment.hpp>
 #include <strainwave/kinematic_error/scaled.hpp>
 #include <strainwave/kinematic_error/stochastic.hpp>
+#include <strainwave/kinematic_error/temperature_dependent.hpp>
 #include <strainwave/kinematic_error/tooth_errors.hpp>
 #include <strainwave/list.hpp>
 
@@ -10,7 +11,8 @@
 namespace strainwave::kinematic_error {
 
 using Pure = List<Fourier, Misalignment, ToothErrors>;
-using Models = Extended<Pure, Scaled>;
+using Unloaded = Extended<Pure, TemperatureDependent>;
+using Models = Extended<Unloaded, Scaled>;
 using Noises = List<Stochastic>;
 
 }  // namespace strainwave::kinematic_error

@@ -11,7 +11,8 @@ struct Growing {
     Unit unit{Unit::output_revolutions};
 
     static constexpr auto name = "growing";
-    static constexpr auto source = "assumed: a power of the use since the beginning; the exponent is the user's";
+    static constexpr auto source =
+        "assumed: a power of the use since the beginning; the exponent is the user's; Archard1953 for wear by transmitted work";
     static constexpr auto doc = R"(
         Fault that grows as a power of the use of the drive.
 
@@ -20,6 +21,11 @@ struct Growing {
         with u the use of the drive, u_0 = begin, u_1 = scale, all counted in ``unit``, p = exponent: 1 is wear in proportion
         to the use, above 1 the growth accelerates, as of cracks, below 1 is running in. The fault reaches its severity at u_0
         + u_1, and keeps it.
+
+        Wear by load and sliding (Archard1953) has p = 1 in ``transmitted_work``: the worn volume is the load times the sliding
+        distance over the hardness, times a constant of the pair. The teeth slide in proportion to the angle of the output, and
+        their load is in proportion to its torque, so that the worn depth is in proportion to the integral of |torque| |d angle|.
+        ``sw.diagnose.transmitted_work`` computes it from a recording, ``sw.diagnose.wear_life`` fits u_1 to repeated tests.
 
         >>> from strainwave.onset import Growing
         >>> Growing(begin=100.0, scale=100.0, exponent=2.0).share([50.0, 150.0, 300.0])

@@ -8,7 +8,10 @@
 namespace strainwave::onset {
 
 /// Unit of usage.
-enum class Unit { output_revolutions, load_cycles };
-constexpr Array<const char*, 2> choices(Unit) { return {{"output_revolutions", "load_cycles"}}; }
+///
+/// The transmitted work is the integral of the torque times the angle of the output, both without sign [J]. The wear of teeth is
+/// in proportion to it: load times sliding distance (Archard1953).
+enum class Unit { output_revolutions, load_cycles, transmitted_work };
+constexpr Array<const char*, 3> choices(Unit) { return {{"output_revolutions", "load_cycles", "transmitted_work"}}; }
 
 }  // namespace strainwave::onset

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/list.hpp>
+#include <strainwave/stiffness/asymmetric.hpp>
 #include <strainwave/stiffness/backlash.hpp>
 #include <strainwave/stiffness/cubic.hpp>
 #include <strainwave/stiffness/linear.hpp>
@@ -11,6 +12,7 @@
 namespace strainwave::stiffness {
 
 using Plain = List<Linear, Piecewise, ThreeSegment, Cubic, MultiCompliance>;
-using Models = Extended<Plain, Backlash>;
+using Sided = Extended<Plain, Asymmetric>;
+using Models = Extended<Sided, Backlash>;
 
 }  // namespace strainwave::stiffness

@@ -1,4 +1,4 @@
-"""A verb of the command in a process of its own, which says what it works on, prints and asks: an object of JSON a line.
+"""A verb of the command in a process of its own, which writes its progress, output and question as lines of JSON.
 
 The studio starts it with the words of a command line. `read` in place of a verb tells how files are read.
 """
@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import sys
 import time
 from collections.abc import Callable, Collection
@@ -20,8 +21,10 @@ from strainwave.progress import watched_by
 from strainwave.questions import Answer, QuestionError
 
 MAX_PROCESSOR_TIME = 3600  # s
+TIME_TO_END = 2.0  # s that a process has to end those that it started
 MAX_MEMORY = 16 * 2**30  # bytes of addresses
 MIN_PROGRESS_INTERVAL = 0.05  # s between two reports of one stage
+MAX_LINE = 10_000  # characters of a line of output
 READ = "read"  # in place of a verb
 
 
@@ -34,29 +37,35 @@ class Lines(TextIOBase):
     def write(self, text: str) -> int:
         *whole, self._begun = (self._begun + text).split("\n")
         for line in whole:
-            self._take(line)
+            self._take(line[:MAX_LINE])
         return len(text)
+
+    def end(self) -> None:
+        """Hand over a last line that no newline ended."""
+        if self._begun:
+            self.write("\n")
 
 
 def main(words: list[str]) -> int:
     """Run a verb. Return its exit code."""
     channel = sys.stdout
 
-    def tell(**event: Any) -> None:
+    def send(**event: Any) -> None:
         channel.write(json.dumps(event, allow_nan=False) + "\n")
         channel.flush()
 
     limit_process(MAX_PROCESSOR_TIME, MAX_MEMORY)
-    Thread(target=_end_with_server, daemon=True).start()
-    sys.stdout = sys.stderr = Lines(lambda line: tell(line=line))
+    lines = Lines(lambda line: send(line=line))
+    sys.stdout = sys.stderr = lines
     sys.argv = ["strainwave", *words]
-    with watched_by(_progress(tell)):
+    with watched_by(_progress(send)):
         if words[:1] == [READ]:
-            tell(readings=_readings(words[1:]))
+            send(readings=_readings(words[1:]))
             return 0
         code, question = cli.run()
+    lines.end()
     if question is not None:
-        tell(question=question_of(question))
+        send(question=question_of(question))
     return code
 
 
@@ -64,19 +73,21 @@ def _end_with_server() -> None:
     """Wait for the end of the input, which the server holds open as long as it runs, and end this process and its own."""
     while os.read(0, 1):  # not by sys.stdin, whose lock would be held at the end
         pass
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(TIME_TO_END)
     kill_group(os.getpid())
 
 
-def _progress(tell: Callable[..., None]) -> Callable[[str, float], None]:
+def _progress(send: Callable[..., None]) -> Callable[[str, float], None]:
     """Return the report of a stage and its share, which leaves out what nobody could see."""
-    told: tuple[str, float] = ("", 0.0)
+    reported: tuple[str, float] = ("", 0.0)
 
     def report(stage: str, share: float) -> None:
-        nonlocal told
+        nonlocal reported
         now = time.monotonic()
-        if stage != told[0] or now - told[1] > MIN_PROGRESS_INTERVAL:
-            told = (stage, now)
-            tell(stage=stage, share=share if share == share else None)
+        if stage != reported[0] or now - reported[1] > MIN_PROGRESS_INTERVAL:
+            reported = (stage, now)
+            send(stage=stage, share=share if share == share else None)
 
     return report
 
@@ -137,13 +148,13 @@ def _reading(name: str, file: Any, mapping_of: Callable[[Any], Any]) -> dict[str
         for channel, column in read.columns.items()
     ]
     columns += _columns(file, {*read.columns.values()})
-    told = {
+    reported = {
         "kind": KINDS[read.kind].title,
         "side": read.side,
         "joint": read.joint,
         "rows": len(read.recording[read.recording.names[0]]),
     }
-    return {"name": name, "columns": columns, "why": [*read.why], "remarks": [*read.remarks]} | told
+    return {"name": name, "columns": columns, "why": [*read.why], "remarks": [*read.remarks]} | reported
 
 
 def _columns(file: Any, used: Collection[str] = ()) -> list[dict[str, Any]]:
@@ -161,4 +172,6 @@ def _range(recording: Any, channel: str) -> dict[str, Any]:
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends what an interrupt ends: a compiler, too
+    Thread(target=_end_with_server, daemon=True).start()
     sys.exit(main(sys.argv[1:]))

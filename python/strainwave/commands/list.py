@@ -46,7 +46,7 @@ def _models(part: str) -> Iterator[str]:
     families = {family: [name for name in members if name in names] for family, members in _families().items()}
     for family, members in families.items():
         yield from [family] * bool(members)
-        yield from (f"  {name:{width}}  {description(name).splitlines()[0]}" for name in members)
+        yield from (f"  {name:{width}}  {_described(_families()[family][name]).splitlines()[0]}" for name in members)
 
 
 def _families() -> dict[str, dict[str, Any]]:
@@ -61,10 +61,14 @@ def models() -> dict[str, Any]:
 
 
 def description(name: str) -> str:
-    """Return the documentation of a model."""
+    """Return the documentation of a model; of several families, if they have a model of this name."""
+    return "\n\n".join(_described(family[name]) for family in _families().values() if name in family)
+
+
+def _described(model: Any) -> str:
     from inspect import cleandoc
 
-    return cleandoc(str(models()[name].__doc__))
+    return cleandoc(str(model.__doc__))
 
 
 def _named(kind: str, names: Any, part: str) -> list[str]:

@@ -25,3 +25,8 @@ from .misalignment_sweep import (
     table_number as table_number,
 )
 from .smallest_error import DetectionLimit as DetectionLimit, detection_limit as detection_limit
+from .wear import (
+    WearLife as WearLife,
+    transmitted_work as transmitted_work,
+    wear_life as wear_life,
+)

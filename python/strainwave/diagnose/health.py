@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, log
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -160,19 +161,50 @@ def trend(hours: Sequence[float], indicators: Sequence[float], threshold: float)
         )
     if float(np.ptp(x)) == 0.0:
         raise ValueError(f"all recordings are of hour {x[0]:g}; a trend needs different hours: give those of each recording")
+    line = line_crossing(x, y, threshold, CONFIDENCE_LEVEL)
+    return HealthTrend(line.slope, line.slope_sigma, threshold, line.distance, line.low, line.high)
+
+
+class LineCrossing(NamedTuple):
+    """Crossing of a fitted line with a threshold.
+
+    Attributes:
+        start: of the line, at x = 0
+        slope, slope_sigma: of it, and its standard deviation
+        distance: from the last x to the crossing; infinite if the line falls
+        low, high: ends of the interval of that distance; infinite if the slope may be zero
+    """
+
+    start: float
+    slope: float
+    slope_sigma: float
+    distance: float
+    low: float
+    high: float
+
+
+def line_crossing(x: Array, y: Array, threshold: float, confidence: float) -> LineCrossing:
+    """Return where the line through points of equal, unknown noise passes a threshold, in the interval of Fieller1954.
+
+    Args:
+        x, y: of the points, shape (n,), n at least 3
+        confidence: probability that the interval contains the crossing
+
+    >>> line_crossing(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), 5.0, 0.95).distance
+    3.0
+    """
     middle, spread = float(x.mean()), float(((x - x.mean()) ** 2).sum())
     slope = float(((x - middle) @ y) / spread)
     level = float(y.mean())
     freedom = len(x) - 2
     variance = float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom
-    reach = student(CONFIDENCE_LEVEL, freedom)
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
-    low, high = _fieller(slope, threshold - level, reach**2 * variance, len(x), spread)
-    return HealthTrend(
+    low, high = _fieller(slope, threshold - level, student(confidence, freedom) ** 2 * variance, len(x), spread)
+    return LineCrossing(
+        level - slope * middle,
         slope,
         float(np.sqrt(variance / spread)),
-        threshold,
         max(crossing - last, 0.0),
         max(middle + low - last, 0.0),
         max(middle + high - last, 0.0),
@@ -184,7 +216,7 @@ def _fieller(slope: float, rise: float, scale: float, count: int, spread: float)
     a, b, c = slope**2 - scale / spread, -2.0 * slope * rise, rise**2 - scale / count
     if a <= 0.0:  # the slope may be zero: no upper end
         inside = b**2 - 4.0 * a * c
-        if a == 0.0 or inside <= 0.0:
+        if a == 0.0 or inside <= 0.0 or c <= 0.0:  # of c <= 0, the line may have passed already
             return -inf, inf
         roots = sorted((-b + s * np.sqrt(inside)) / (2.0 * a) for s in (1.0, -1.0))
         return (float(roots[1]) if rise > 0.0 else -inf), inf

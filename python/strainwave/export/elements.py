@@ -68,6 +68,10 @@ class Spring:
         force: Array = (self.linear + self.quadratic * np.abs(x) + self.cubic * x**2) * x
         return force
 
+    def times(self, factor: float) -> Spring:
+        """Return the spring with a multiple of the torque."""
+        return Spring(factor * self.linear, factor * self.quadratic, factor * self.cubic, self.gap)
+
 
 @dataclass(frozen=True)
 class ShaftFriction:
@@ -337,7 +341,7 @@ def _width_and_energy(twist: Array, torque: Array) -> tuple[float, float]:
 
 def _springs(law: Any, twist: float) -> tuple[Spring, ...]:
     """Return springs whose sum is the law up to a twist, exactly if it is linear, cubic, piecewise linear or one of these with
-    play."""
+    play; of a law that differs between the senses of twist the mean."""
     match law:
         case stiffness.Linear():
             return (Spring(float(law.k)),)
@@ -347,6 +351,9 @@ def _springs(law: Any, twist: float) -> tuple[Spring, ...]:
             return _stiffening([0.0, law.knee], [law.k1, law.k1 + law.k2])
         case stiffness.ThreeSegment() if law.k1 <= law.k2 <= law.k3:
             return _stiffening([0.0, float(law.twist(law.t1)), float(law.twist(law.t2))], [law.k1, law.k2, law.k3])
+        case stiffness.Asymmetric():  # the mean of both senses, as these springs are odd
+            mean = 0.5 * (1.0 + float(law.negative_factor))
+            return tuple(spring.times(mean) for spring in _springs(law.law, twist))
         case stiffness.Backlash():
             half = 0.5 * float(law.clearance)
             return tuple(replace(spring, gap=spring.gap + half) for spring in _springs(law.law, twist - half))

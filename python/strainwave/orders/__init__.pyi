@@ -6,5 +6,9 @@ from .order_spectrum import (
     order_amplitudes as order_amplitudes,
     order_spectrum as order_spectrum,
 )
+from .over_temperature import (
+    ErrorOverTemperature as ErrorOverTemperature,
+    error_over_temperature as error_over_temperature,
+)
 from .torque_ripple import Ripple as Ripple, ripple as ripple
 from .two_encoders import TransmissionError as TransmissionError

@@ -32,9 +32,10 @@ def fault_spectrum(
 
     >>> import strainwave as sw
     >>> record = {"speed": 30.0, "load_torque": 0.0, "duration": 2.0, "rate": 500.0, "noise": 0.02}
-    >>> found = fault_spectrum(sw.load("tilt-actuator-lumped"), {"housing_eccentricity": 50e-6}, record)
-    >>> [order for order, one, limit in zip(found["orders"], found["misaligned"], found["limit"]) if one > limit]
-    [2.0]
+    >>> moved = {"housing_eccentricity": 50e-6}
+    >>> spectrum = fault_spectrum(sw.load("tilt-actuator-lumped"), moved, record, "single")
+    >>> [order for order, size, limit in zip(spectrum["orders"], spectrum["misaligned"], spectrum["limit"]) if size > limit]
+    [1.0, 2.0]
     """
     law, is_assumed = wave_generator(drive)
     sizes = {
@@ -43,11 +44,11 @@ def fault_spectrum(
     numbers = {name: arguments.number(name, record.get(name)) for name in ("speed", "load_torque", "duration", "rate", "noise")}
     run = SteadyRun.of(drive, numbers["speed"], numbers["load_torque"], numbers["duration"], numbers["rate"], max(ORDERS))
     healthy, misaligned = (run.with_law(law.replace(**of, combine=combine)) for of in ({}, sizes))
-    found: dict[str, Any] = {"orders": list(ORDERS), "healthy": [], "misaligned": [], "limit": [], "assumed": is_assumed}
+    spectrum: dict[str, Any] = {"orders": list(ORDERS), "healthy": [], "misaligned": [], "limit": [], "assumed": is_assumed}
     for order in ORDERS:
         before, after = (RecordedOrder.of(each, order) for each in (healthy, misaligned))
         needed = needed_signal_to_noise(DETECTION_PROBABILITY, FALSE_ALARM, before.regression.freedom, len(ORDERS))
-        found["healthy"].append(abs(before.wave))
-        found["misaligned"].append(abs(after.wave))
-        found["limit"].append(needed * before.sigma(hypot(numbers["noise"], before.own_noise)))
-    return found
+        spectrum["healthy"].append(abs(before.wave))
+        spectrum["misaligned"].append(abs(after.wave))
+        spectrum["limit"].append(needed * before.sigma(hypot(numbers["noise"], before.own_noise)))
+    return spectrum

@@ -5,6 +5,7 @@ A page names files by their names in the workspace, and never by paths. `words_o
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from inspect import Parameter, signature
@@ -156,7 +157,11 @@ def _texts(field: Field, value: Any) -> list[str]:
     if len(texts) > (MAX_VALUES if field.several else 1):
         raise ValueError(f"{field.name} has {len(texts)} values; it takes {MAX_VALUES if field.several else 1}")
     for text in texts:
-        if not isinstance(text, str) or len(text) > MAX_CHARACTERS or not text.isprintable():
+        if (
+            not isinstance(text, str)
+            or len(text) > MAX_CHARACTERS
+            or any(unicodedata.category(each) in ("Cc", "Cs") for each in text)
+        ):
             raise ValueError(f"{field.name}: a line of at most {MAX_CHARACTERS} characters is expected")
     return texts
 

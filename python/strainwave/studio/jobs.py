@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import sys
 import time
-from collections.abc import AsyncIterator, Callable, Mapping
-from contextlib import suppress
+from collections.abc import AsyncGenerator, Callable, Mapping
+from contextlib import aclosing, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,9 @@ MAX_RUNNING = 2  # jobs at once; further ones wait
 MAX_WAITING = 20
 MAX_KEPT = 200  # jobs that are listed
 MAX_LINES = 1000  # of the output of a job
+MAX_READING_TIME = 120.0  # s
+TIME_TO_END = 3.0  # s that a process has to end by itself
+REPORT_INTERVAL = 0.2  # s between two reports of a running job
 MAX_EVENT = 2**22  # bytes of a line of a job
 STATE_FILE = "job.json"
 RUNS_VERB = ("-m", "strainwave.commands.job")
@@ -36,13 +41,14 @@ class Jobs:
 
     def __init__(self, workspace: Workspace, forms: Mapping[str, Form], changed: Callable[[dict[str, Any]], None]) -> None:
         self._workspace, self._forms, self._changed = workspace, forms, changed
-        self._running = asyncio.Semaphore(MAX_RUNNING)
+        self._running, self._reading = asyncio.Semaphore(MAX_RUNNING), asyncio.Semaphore(1)
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._is_closing = False
+        self._reported: dict[str, float] = {}  # when each running job was reported last, by its name
         self.jobs = {job["id"]: job for job in _earlier(workspace.results)}
         for job in self.jobs.values():
             if job["state"] in ("waiting", "running"):
-                self._tell(job, "interrupted")
+                self._report_state(job, "interrupted")
 
     def start(self, verb: str, values: Mapping[str, Any]) -> str:
         """Start a verb with a form that was filled in. Return the name of the job.
@@ -54,7 +60,8 @@ class Jobs:
             raise ValueError(f"there is no form of {verb!r}"[:200])
         if len(self._tasks) >= MAX_WAITING:
             raise ValueError(f"{len(self._tasks)} jobs wait; cancel some")
-        number = 1 + max((int(name.partition("-")[0]) for name in self.jobs), default=0)
+        folders = (path.name.partition("-")[0] for path in self._workspace.results.iterdir())
+        number = 1 + max((int(name) for name in folders if name.isdecimal()), default=0)
         name = f"{number}-{verb.replace(' ', '-')}"
         folder = self._workspace.results / name
         words = form.words_of(values, self._workspace.path_of, folder)
@@ -69,7 +76,7 @@ class Jobs:
             "begun": time.time(),
         }
         self.jobs[name] = job
-        self._tell(job, "waiting")
+        self._report_state(job, "waiting")
         self._tasks[name] = asyncio.create_task(self._run(job, words))
         return name
 
@@ -92,19 +99,23 @@ class Jobs:
         Raises:
             ValueError: a field is not one that is taken, or the files cannot be read in time
         """
-        known = ("paths", "column", "unit", "constant", "side", "joint", "kind", "gear")
-        form = self._forms["identify"]
-        words = form.words_of(
-            {"gear": "hfuc-20-80"} | {name: values[name] for name in known if name in values}, self._workspace.path_of, Path()
-        )
-        end = words.index("--")
-        found: list[dict[str, Any]] = []
-        async with self._running:
-            async for event in self._events(["read", *words[1:end], "--", *words[end + 2 :]]):
-                found = event.get("readings", found)
-        return found
+        stated = {
+            name: values[name] for name in ("paths", "column", "unit", "constant", "side", "joint", "kind") if name in values
+        }
+        form = replace(self._forms["identify"], verb="read", has_folder=False)
+        form = replace(form, fields=tuple(field for field in form.fields if field.name != "gear"))
+        words, last = form.words_of(stated, self._workspace.path_of, Path()), "the process ended"
+        try:
+            async with self._reading, asyncio.timeout(MAX_READING_TIME), aclosing(self._events(words)) as events:
+                async for event in events:
+                    if "readings" in event:
+                        return list(event["readings"])
+                    last = str(event.get("line", last))
+        except TimeoutError:
+            last = f"this takes longer than {MAX_READING_TIME:g} s"
+        raise ValueError(f"the files could not be read: {last}")
 
-    async def _events(self, words: list[str]) -> AsyncIterator[dict[str, Any]]:
+    async def _events(self, words: list[str]) -> AsyncGenerator[dict[str, Any], None]:
         """Yield what the process of a verb reports, files by their names on the page, and at last its exit code."""
         process = await asyncio.create_subprocess_exec(
             *(sys.executable, *RUNS_VERB, *words),
@@ -126,19 +137,27 @@ class Jobs:
             yield {"code": await process.wait()}
         finally:
             if process.returncode is None:
+                process.terminate()  # so that it ends a compiler that it started
+                with suppress(TimeoutError):
+                    await asyncio.wait_for(process.wait(), TIME_TO_END)
+            if process.returncode is None:
                 kill_group(process.pid)
                 await process.wait()
 
     async def _run(self, job: dict[str, Any], words: list[str]) -> None:
         begun, state = time.monotonic(), "failed"
         try:
-            async with self._running:
-                self._tell(job, "running")
-                async for event in self._events(words):
+            async with self._running, aclosing(self._events(words)) as events:
+                self._report_state(job, "running")
+                async for event in events:
                     if "code" in event:
                         state = "asked" if "question" in job else STATES.get(event["code"], "failed")
+                        if event["code"] < 0:
+                            job["lines"].append(
+                                f"the process was ended by signal {-event['code']}: a run has limits of time and memory"
+                            )
                     else:
-                        self._take(job, event)
+                        self._apply(job, event)
         except asyncio.CancelledError:
             state = "interrupted" if self._is_closing else "cancelled"
         except (OSError, ValueError) as error:
@@ -149,22 +168,27 @@ class Jobs:
             folder = self._workspace.results / job["id"]
             names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
             job |= {"files": [name for name in names if name != STATE_FILE], "seconds": time.monotonic() - begun}
-            self._tell(job, state)
+            self._report_state(job, state)
 
-    def _take(self, job: dict[str, Any], event: dict[str, Any]) -> None:
+    def _apply(self, job: dict[str, Any], event: dict[str, Any]) -> None:
         """Take over what a process reports."""
         if "line" not in event:
             job |= {name: event[name] for name in ("stage", "share", "question") if name in event}
         elif len(job["lines"]) < MAX_LINES:
             job["lines"].append(str(event["line"]))
-        self._tell(job)
+        if (now := time.monotonic()) - self._reported.get(job["id"], 0.0) > REPORT_INTERVAL:
+            self._reported[job["id"]] = now
+            self._report_state(job)
 
-    def _tell(self, job: dict[str, Any], state: str | None = None) -> None:
+    def _report_state(self, job: dict[str, Any], state: str | None = None) -> None:
         """Report a job, and write it if its state is another one."""
         if state is not None:
             job["state"] = state
-            with suppress(OSError), replacing(self._workspace.results / job["id"] / STATE_FILE) as file:
-                file.write(json.dumps(job).encode())
+            try:
+                with replacing(self._workspace.results / job["id"] / STATE_FILE) as file:
+                    file.write(json.dumps(job, allow_nan=False).encode())
+            except OSError as error:
+                job["lines"].append(f"the state of this run could not be written: {error}")
         self._changed(job)
 
 
@@ -179,10 +203,22 @@ def _event(line: str) -> dict[str, Any]:
 
 def _earlier(results: Path) -> list[dict[str, Any]]:
     """Return the jobs that earlier servers wrote, the newest ones."""
-    found = []
+    jobs = []
     for path in results.glob(f"*/{STATE_FILE}"):
-        with suppress(OSError, ValueError):
-            job = json.loads(path.read_text())
-            if isinstance(job, dict) and job.get("id") == path.parent.name:
-                found.append(job)
-    return sorted(found, key=lambda job: int(job["id"].partition("-")[0]))[-MAX_KEPT:]
+        with suppress(OSError, ValueError, RecursionError):
+            job = json.loads(path.read_text(), parse_constant=_refuse)
+            if _is_job(job, path.parent.name):
+                jobs.append(job)
+    return sorted(jobs, key=lambda job: int(job["id"].partition("-")[0]))[-MAX_KEPT:]
+
+
+def _refuse(name: str) -> None:
+    """Raise ValueError for a number that JSON of a page does not have, as NaN."""
+    raise ValueError(f"{name} is no number")
+
+
+def _is_job(job: Any, name: str) -> bool:
+    """True for the state of a job, as a server writes it into the folder of this name."""
+    kinds = {"verb": str, "state": str, "values": dict, "lines": list, "files": list, "begun": float}
+    is_of_folder = isinstance(job, dict) and job.get("id") == name and re.fullmatch(r"\d{1,6}-[a-z-]{1,40}", name)
+    return bool(is_of_folder) and all(isinstance(job.get(key), kind) for key, kind in kinds.items())

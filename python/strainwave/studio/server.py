@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from starlette.applications import Starlette
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -44,15 +44,15 @@ REFUSED_HANDSHAKE = 1008  # code of a closed socket: policy violated
 PARTS = resources.files("strainwave.studio").joinpath("page")
 
 
-class _Wish(NamedTuple):
-    """What a page asks: what to do, with the name of a verb or a job, and values."""
+class _PageRequest(NamedTuple):
+    """Request of a page: an action, the name of a verb or a job, and values."""
 
     do: str
     name: str
     values: dict[str, Any]
 
     @classmethod
-    def of(cls, text: str) -> _Wish:
+    def of(cls, text: str) -> _PageRequest:
         """Return what a message asks.
 
         Raises:
@@ -106,19 +106,19 @@ class Guard:
         changes = scope["type"] == "websocket" or scope["method"] not in ("GET", "HEAD")
         if origin != f"http://{host}" and (changes or origin is not None):
             return "the request comes from another page"
-        token = scope["path"].split("/")[1]
+        token = scope["path"].removeprefix("/").partition("/")[0]
         if not compare_digest(token.encode(), self._token.encode()):
             return "the address lacks the token of this studio: use the one that strainwave studio printed"
         return ""
 
 
 class Studio:
-    """The pages of a workspace: what they ask and what they are told."""
+    """Answers to the requests of all pages of a workspace, and what changes for them."""
 
     def __init__(self, workspace: Workspace, forms: Mapping[str, Form], gear: GearSet | None) -> None:
         self.workspace = workspace
         self._pages: set[asyncio.Queue[str]] = set()
-        self.jobs = Jobs(workspace, forms, lambda job: self._tell_all({"job": job}))
+        self.jobs = Jobs(workspace, forms, lambda job: self._send_to_pages({"job": job}))
         self.assets = assets(gear, forms)
 
     async def home(self, request: Request) -> Response:
@@ -135,9 +135,9 @@ class Studio:
     async def upload(self, request: Request) -> Response:
         try:
             name = await self.workspace.upload(request.path_params["name"], request.stream())
-        except (ValueError, OSError) as error:
+        except (ValueError, OSError, ClientDisconnect) as error:
             return JSONResponse({"problem": str(error)}, 400)
-        self._tell_all(self._state())
+        self._send_to_pages(self._state())
         return JSONResponse({"name": name})
 
     async def remove(self, request: Request) -> Response:
@@ -145,11 +145,13 @@ class Studio:
             self.workspace.remove(request.path_params["name"])
         except (ValueError, OSError) as error:
             return JSONResponse({"problem": str(error)}, 400)
-        self._tell_all(self._state())
+        self._send_to_pages(self._state())
         return Response(status_code=204)
 
     async def result(self, request: Request) -> Response:
         try:
+            if request.path_params["path"].endswith("workbench.html"):  # which the studio contains
+                raise ValueError("open this gear by its button in the studio, or this page from the folder of the studio")
             path = self.workspace.result(request.path_params["job"], request.path_params["path"])
         except ValueError as error:
             return PlainTextResponse(str(error), 404)
@@ -157,56 +159,58 @@ class Studio:
         return FileResponse(path, media_type=kind, headers={"Content-Security-Policy": RESULT_POLICY})
 
     async def live(self, socket: WebSocket) -> None:
-        """Serve one page: it is told what changes, and of its questions of one kind only the newest is answered."""
+        """Serve one page: send what changes, and answer only the newest of its requests of one kind."""
         await socket.accept()
-        told: asyncio.Queue[str] = asyncio.Queue()
-        told.put_nowait(json.dumps(self._state() | {"jobs": list(self.jobs.jobs.values())}))
-        self._pages.add(told)
+        outgoing: asyncio.Queue[str] = asyncio.Queue()
+        outgoing.put_nowait(json.dumps(self._state() | {"jobs": list(self.jobs.jobs.values())}))
+        self._pages.add(outgoing)
         newest: dict[str, asyncio.Task[None]] = {}
-        sender = asyncio.create_task(_send_all(socket, told))
+        sender = asyncio.create_task(_send_all(socket, outgoing))
         try:
             while True:
-                await self._take(_Wish.of(await socket.receive_text()), told, newest)
+                await self._handle(_PageRequest.of(await socket.receive_text()), outgoing, newest)
         except (WebSocketDisconnect, ValueError, KeyError, RuntimeError):  # it has gone, or is none of these pages
             pass
         finally:
-            self._pages.discard(told)
+            self._pages.discard(outgoing)
             for task in (sender, *newest.values()):
                 task.cancel()
             with suppress(RuntimeError):
                 await socket.close()
 
-    async def _take(self, wish: _Wish, told: asyncio.Queue[str], newest: dict[str, asyncio.Task[None]]) -> None:
+    async def _handle(
+        self, page_request: _PageRequest, outgoing: asyncio.Queue[str], newest: dict[str, asyncio.Task[None]]
+    ) -> None:
         """Do what a page asks."""
         try:
-            if wish.do == "start":
-                told.put_nowait(json.dumps({"started": self.jobs.start(wish.name, wish.values)}))
-            elif wish.do == "cancel":
-                self.jobs.cancel(wish.name)
-            elif wish.do in LIVE:
-                if wish.do in newest:
-                    newest[wish.do].cancel()
-                newest[wish.do] = asyncio.create_task(self._answer(wish, told))
+            if page_request.do == "start":
+                outgoing.put_nowait(json.dumps({"started": self.jobs.start(page_request.name, page_request.values)}))
+            elif page_request.do == "cancel":
+                self.jobs.cancel(page_request.name)
+            elif page_request.do in LIVE:
+                if page_request.do in newest:
+                    newest[page_request.do].cancel()
+                newest[page_request.do] = asyncio.create_task(self._answer(page_request, outgoing))
         except (ValueError, OSError) as error:
-            told.put_nowait(json.dumps({"problem": str(error)}))
+            outgoing.put_nowait(json.dumps({"problem": str(error)}))
 
-    async def _answer(self, wish: _Wish, told: asyncio.Queue[str]) -> None:
+    async def _answer(self, page_request: _PageRequest, outgoing: asyncio.Queue[str]) -> None:
         try:
-            answer = {wish.do: await LIVE[wish.do](self, wish.values)}
-        except (ValueError, TypeError, KeyError, OSError, ArithmeticError) as error:
-            answer = {"problem": str(error), "of": wish.do}
-        told.put_nowait(json.dumps(answer))
+            answer = {page_request.do: await LIVE[page_request.do](self, page_request.values)}
+        except (ValueError, TypeError, KeyError, AttributeError, OSError, ArithmeticError, RecursionError) as error:
+            answer = {"problem": str(error), "of": page_request.do}
+        outgoing.put_nowait(json.dumps(answer, allow_nan=False))
 
     def _state(self) -> dict[str, Any]:
         return {"files": list(self.workspace.files), "opened": list(self.workspace.opened)}
 
-    def _tell_all(self, message: dict[str, Any]) -> None:
-        text = json.dumps(message)
-        for told in self._pages:
-            told.put_nowait(text)
+    def _send_to_pages(self, message: dict[str, Any]) -> None:
+        text = json.dumps(message, allow_nan=False)
+        for outgoing in self._pages:
+            outgoing.put_nowait(text)
         if message.get("job", {}).get("files"):  # a gear may be among them
-            for told in self._pages:
-                told.put_nowait(json.dumps(self._state()))
+            for outgoing in self._pages:
+                outgoing.put_nowait(json.dumps(self._state()))
 
 
 async def _read(studio: Studio, values: dict[str, Any]) -> Any:
@@ -219,21 +223,23 @@ async def _gear(studio: Studio, values: dict[str, Any]) -> Any:
 
 async def _spectrum(studio: Studio, values: dict[str, Any]) -> Any:
     name = values["drive"]
-    drive = GearSet.read(name if is_in_catalogue(name) else studio.workspace.path_of(name))
-    return await asyncio.to_thread(lambda: fault_spectrum(drive.drive, values["moved"], values["record"], values["combine"]))
+    place = name if is_in_catalogue(name) else studio.workspace.path_of(name)
+    return await asyncio.to_thread(
+        lambda: fault_spectrum(GearSet.read(place).drive, values["moved"], values["record"], values["combine"])
+    )
 
 
 LIVE: dict[str, Callable[[Studio, dict[str, Any]], Awaitable[Any]]] = {"read": _read, "gear": _gear, "spectrum": _spectrum}
 
 
-async def _send_all(socket: WebSocket, told: asyncio.Queue[str]) -> None:
+async def _send_all(socket: WebSocket, outgoing: asyncio.Queue[str]) -> None:
     with suppress(WebSocketDisconnect, RuntimeError):
         while True:
-            await socket.send_text(await told.get())
+            await socket.send_text(await outgoing.get())
 
 
 def assets(gear: GearSet | None, forms: Mapping[str, Form]) -> dict[str, str]:
-    """Return the files of the page by name: the page of the workbench, its scripts and styles apart from it.
+    """Return the files of the page by name: the page of the workbench, its scripts and styles moved_to_file from it.
 
     Raises:
         FileNotFoundError: the workbench was not built
@@ -241,12 +247,12 @@ def assets(gear: GearSet | None, forms: Mapping[str, Form]) -> dict[str, str]:
     html = re.sub(r'<meta http-equiv="Content-Security-Policy"[^>]*>\n?', "", page(gear))
     made = {name: PARTS.joinpath(name).read_text("utf-8") for name in ("studio.js", "studio.css")}
 
-    def apart(match: re.Match[str]) -> str:
+    def moved_to_file(match: re.Match[str]) -> str:
         name = f"workbench-{len(made)}.{'css' if match['tag'] == 'style' else 'js'}"
         made[name] = match["content"]
         return _style(name) if match["tag"] == "style" else _script(name)
 
-    html = re.sub(r"<(?P<tag>style|script)>(?P<content>.*?)</(?P=tag)>", apart, html, flags=re.DOTALL)
+    html = re.sub(r"<(?P<tag>style|script)>(?P<content>.*?)</(?P=tag)>", moved_to_file, html, flags=re.DOTALL)
     about = {"pages": described(forms), "sets": [*catalogue(), *catalogue("drives")], "channels": list(CHANNELS)}
     data = f'<script type="application/json" id="studio">{embedded(about)}</script>'
     html = html.replace("</head>", f'<link rel="icon" href="data:,">{_style("studio.css")}</head>')

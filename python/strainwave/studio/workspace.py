@@ -5,20 +5,23 @@ from __future__ import annotations
 import os
 import re
 import secrets
+import unicodedata
 from collections.abc import AsyncIterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from strainwave.files.folder import inside
 from strainwave.files.gear_set import GearSet
-from strainwave.files.writing import replacing
+from strainwave.files.writing import DRAFT_PREFIX, replacing
 from strainwave.messages import quoted
 
 MAX_UPLOAD = 2**31  # bytes of one file
 MAX_UPLOADS = 2**33  # bytes of all files together
 MAX_FILES = 1000
-NAME = re.compile(r"[^\W_][\w .,()+@=-]{0,119}")
-SETTINGS = (".toml",)  # of gears and mappings
+NAME = re.compile(r"[^\W_](?:[\w .,()+@=-]{0,118}[\w)])?")
+NAMES_OF_WINDOWS = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 TOKEN_FILE = "token"
+TOKEN = re.compile(r"[\w-]{32}")
 
 
 class Workspace:
@@ -35,8 +38,12 @@ class Workspace:
     def __init__(self, folder: Path, opened: Sequence[Path] = ()) -> None:
         self.folder = folder
         self.uploads, self.results = folder / "uploads", folder / "results"
+        self._sizes: dict[str, int] = {}  # of uploads that are being written [bytes]
         for each in (folder, self.uploads, self.results):
             each.mkdir(mode=0o700, parents=True, exist_ok=True)
+            each.chmod(0o700)
+        for draft in self.uploads.glob(f"{DRAFT_PREFIX}*"):  # of a server that was killed
+            draft.unlink()
         for path in opened:
             if not path.exists():
                 raise FileNotFoundError(f"{path} is not there")
@@ -50,7 +57,12 @@ class Workspace:
         """Paths of the files by their names, those of the command line first."""
         uploads = {path.name: path for path in sorted(self.uploads.iterdir()) if NAME.fullmatch(path.name)}
         gears = {f"{path.parent.name}/{path.name}": path for path in sorted(self.results.glob("*/*.toml"))}
-        return {**uploads, **gears, **self.opened}
+        own = {name: path for name, path in {**uploads, **gears}.items() if self._is_own(path)}
+        return {**own, **self.opened}
+
+    def _is_own(self, path: Path) -> bool:
+        """True for a regular file of the folder that no link leads out of."""
+        return path.is_file() and path.resolve().is_relative_to(self.folder.resolve())
 
     def path_of(self, name: str) -> Path:
         """Return the path of a file by its name.
@@ -68,9 +80,8 @@ class Workspace:
         Raises:
             ValueError: there is no such file
         """
-        folder = self.results / job
-        path = inside(folder, name) if re.fullmatch(r"\d{1,6}-[a-z-]{1,40}", job) else folder
-        if not path.is_file():
+        path = inside(self.results / job, name) if re.fullmatch(r"\d{1,6}-[a-z-]{1,40}", job) else self.results
+        if not self._is_own(path):
             raise ValueError(f"{quoted(f'{job}/{name}')} is not there")
         return path
 
@@ -80,28 +91,39 @@ class Workspace:
         Raises:
             ValueError: the name is none of a file, or the file is too large
         """
-        if not NAME.fullmatch(name):
-            raise ValueError(
-                f"{quoted(name)} is no name of a file here: begin with a letter or digit, then letters, digits, _ - . , + = ( )"
-            )
-        files = list(self.uploads.iterdir())
-        room = MAX_UPLOADS - sum(path.stat().st_size for path in files)
-        if len(files) >= MAX_FILES:
-            raise ValueError(f"this studio has {MAX_FILES} files; remove some from {self.uploads}")
-        taken, stem, suffix = self.files, Path(name).stem, Path(name).suffix
-        free = next(
-            each for each in (name, *(f"{stem}-{count}{suffix}" for count in range(2, MAX_FILES + 2))) if each not in taken
-        )
-        size = 0
-        with replacing(self.uploads / free) as file:
-            async for part in content:
-                size += len(part)
-                if size > min(MAX_UPLOAD, room):
-                    raise ValueError(
-                        f"{quoted(name)} is larger than {min(MAX_UPLOAD, room) / 1e6:.0f} MB; open it from the command line"
-                    )
-                file.write(part)
+        free = self._free(unicodedata.normalize("NFC", name))
+        self._sizes[free] = 0
+        try:
+            with replacing(self.uploads / free) as file:
+                async for part in content:
+                    self._sizes[free] += len(part)
+                    if self._sizes[free] > MAX_UPLOAD or self._uploaded() > MAX_UPLOADS:
+                        raise ValueError(f"{quoted(name)} is too large for this studio; open it from the command line")
+                    file.write(part)
+        finally:
+            del self._sizes[free]
         return free
+
+    def _free(self, name: str) -> str:
+        """Return the name under which a file is kept: this one, or with a number, if it is taken or about to be.
+
+        Raises:
+            ValueError: it is none of a file, or there are too many files
+        """
+        stem, suffix = Path(name).stem, Path(name).suffix
+        if not NAME.fullmatch(name) or stem.casefold() in NAMES_OF_WINDOWS:
+            raise ValueError(
+                f"{quoted(name)} is no name of a file here: a letter or digit, then these, blanks and _ - . , + = @ ( )"
+            )
+        taken = {each.casefold() for each in (*self.files, *self._sizes)}
+        if len(taken) >= MAX_FILES:
+            raise ValueError(f"this studio has {MAX_FILES} files; remove some from {self.uploads}")
+        names = (name, *(f"{stem}-{count}{suffix}" for count in range(2, MAX_FILES + 2)))
+        return next(each for each in names if each.casefold() not in taken)
+
+    def _uploaded(self) -> int:
+        """Return the size of all uploads, those that are being written too [bytes]."""
+        return sum(path.lstat().st_size for path in self.uploads.iterdir()) + sum(self._sizes.values())
 
     def remove(self, name: str) -> None:
         """Remove a file that a page uploaded.
@@ -117,18 +139,19 @@ class Workspace:
     def token(self) -> str:
         """Return the secret of this studio's addresses, which a later server of the same folder keeps."""
         path = self.folder / TOKEN_FILE
-        if not path.exists():
-            descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-            with open(descriptor, "w") as file:
-                file.write(secrets.token_urlsafe(24))
-        return path.read_text().strip()
+        kept = path.read_text().strip() if path.is_file() else ""
+        if not TOKEN.fullmatch(kept):
+            kept = secrets.token_urlsafe(24)
+            path.unlink(missing_ok=True)
+            with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+                file.write(kept)
+        return kept
 
 
 def first_gear(opened: Sequence[Path]) -> GearSet | None:
-    """Return the gear of the first gear file among these; None if there is none.
-
-    Raises:
-        ValueError: it cannot be read
-    """
-    gears = [path for path in opened if path.suffix in SETTINGS]
-    return GearSet.read(gears[0]) if gears else None
+    """Return the gear of the first gear file among these; None if there is none."""
+    for path in opened:
+        if path.suffix == ".toml":
+            with suppress(ValueError):  # a mapping, or another file of settings
+                return GearSet.read(path)
+    return None

@@ -394,11 +394,11 @@ def test_rank_prints_failed_checks_first_and_ends_in_3_as_identify_does(tmp_path
 def test_a_single_branch_gives_the_spring(tmp_path: Path) -> None:
     twist = np.linspace(0.0, 1e-3, 50)
     (tmp_path / "branch.csv").write_text(
-        "twist [rad],torque [N.m],room [degC]\n" + "".join(f"{t},{2e4 * t},22\n" for t in twist)
+        "twist [rad],torque [N.m],supply [V]\n" + "".join(f"{t},{2e4 * t},22\n" for t in twist)
     )
     result = strainwave("identify", "hfuc-20-80", "branch.csv", folder=tmp_path)
     assert result.returncode == 0, result.stderr
-    assert "columns not used: room" in result.stdout
+    assert "columns not used: supply" in result.stdout
 
 
 @pytest.mark.parametrize("verb", ["identify", "predict", "orders"])

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import AsyncIterator, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ import strainwave as sw
 import typer
 from strainwave.commands.cli import app
 from strainwave.commands.studio import _verbs
+from strainwave.operating_system import locked_folder
 from strainwave.studio.forms import forms
+from strainwave.studio.serve import serve
 from strainwave.studio.workspace import Workspace
 from strainwave.workbench.page import is_installed
 
@@ -152,7 +155,7 @@ def test_a_file_that_is_too_large_leaves_nothing(page: Page, folder: Path, monke
     monkeypatch.setattr("strainwave.studio.workspace.MAX_UPLOAD", 1000)
     answer = page.put("large.csv", b"1\n" * 1000)
     assert answer.status_code == 400
-    assert "larger than" in answer.json()["problem"]
+    assert "too large" in answer.json()["problem"]
     assert list((folder / "uploads").iterdir()) == []
 
 
@@ -299,6 +302,66 @@ def test_a_job_ends_with_its_server_however_that_ends(tmp_path: Path) -> None:
         process.stdin.close()
         assert process.wait(60) != 0
     assert list(tmp_path.iterdir()) == []
+
+
+def test_links_out_of_the_folder_are_not_followed(page: Page, folder: Path, tmp_path: Path) -> None:
+    secret = tmp_path / "secret.csv"
+    secret.write_text("of another folder\n")
+    (folder / "uploads" / "link.csv").symlink_to(secret)
+    (folder / "results" / "7-identify").symlink_to(tmp_path)
+    assert page.studio.workspace.files == {}
+    assert page.client.get("results/7-identify/secret.csv").status_code == 404
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"id": "7-identify"}',
+        '{"id": "x"}',
+        "[" * 100_000,
+        '{"id": "7-identify", "verb": "x", "state": "done", "values": {}, "lines": [], "files": [], "begun": NaN}',
+    ],
+)
+def test_a_state_that_no_server_wrote_is_not_listed(folder: Path, text: str) -> None:
+    (folder / "results" / "7-identify").mkdir(parents=True)
+    (folder / "results" / "7-identify" / "job.json").write_text(text)
+    for page in opened(folder):
+        assert page.told("jobs") == []
+
+
+def test_an_empty_token_is_replaced_and_a_folder_has_one_studio(folder: Path) -> None:
+    folder.mkdir()
+    (folder / "token").write_text("")
+    assert len(Workspace(folder).token()) == 32
+    with locked_folder(folder, wait=False):
+        arguments = {"folder": folder, "host": "127.0.0.1", "port": 0, "browser": False}
+        with pytest.raises(BlockingIOError, match="another studio"):
+            serve([], [], **arguments)
+
+
+@pytest.mark.parametrize(("host", "port", "words"), [("0.0.0.0", 0, "stands for every"), ("127.0.0.1", 70000, "is no port")])
+def test_what_cannot_be_served_is_refused(folder: Path, host: str, port: int, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        serve([], [], folder=folder, host=host, port=port, browser=False)
+
+
+def test_uploads_of_one_name_at_the_same_time_are_both_kept(folder: Path) -> None:
+    workspace = Workspace(folder)
+
+    async def content(text: bytes, begin: asyncio.Event, wait: asyncio.Event) -> AsyncIterator[bytes]:
+        begin.set()
+        await wait.wait()
+        yield text
+
+    async def both() -> list[str]:
+        first, second = asyncio.Event(), asyncio.Event()
+        one = workspace.upload("run.csv", content(b"one", first, second))
+        other = workspace.upload("RUN.csv", content(b"other", second, first))
+        return list(await asyncio.gather(one, other))
+
+    names = asyncio.run(both())
+    assert names == ["run.csv", "RUN-2.csv"]
+    assert [(folder / "uploads" / name).read_bytes() for name in names] == [b"one", b"other"]
 
 
 def test_a_page_removes_what_was_uploaded_and_nothing_else(folder: Path, tmp_path: Path) -> None:

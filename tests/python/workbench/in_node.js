@@ -39,6 +39,8 @@ const TASKS = {
   }),
   /** Why a fit of measured values is refused, without a core. */
   refuse_fit: ({ numbers, measured }) => { try { fitted(() => null, numbers, numbers.map(() => ({})), numbers.map((_, i) => i), measured); } catch (error) { return error.message; } },
+  states: ({ entries }) => entries.map(([source, deviation]) => stateOf(source, deviation)),
+  units: ({ schema, controllers, unit }) => controllers.map((name) => fieldsWithMotor(schema.models[name].fields, unit).map((field) => [field.name, field.unit, field.doc])),
   svg: ({ plot }) => svgOf(plot),
   points: ({ given }) => given.map((each) => Object.entries(pointsFrom(each)).map(([slot, { x, y }]) => [slot, [...x], [...y]])),
   /** The fragment of points, as many as given, and what a link leaves out. */

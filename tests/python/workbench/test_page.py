@@ -168,6 +168,8 @@ def test_numbers_show_their_source_and_assumptions_are_named(tab: Any) -> None:
     assert "from assumed numbers" in shown["loop"]
     assert "motor, controller and load are assumed" in shown["run"]
     tab.locator("#catalogue").select_option("hfuc-25-100")
+    stiffness = tab.locator(".row", has=tab.locator("#field-gear\\.stiffness\\.k1"))
+    assert stiffness.locator(".mark").text_content() == "Harmonic Drive AG catalogue"
     entry = GearSet.read("hfuc-25-100").sources["gear.hysteresis.breakaway[0]"]
     assert row.get_attribute("title") == f"Source: {entry.source}"
     assert "single gears scatter by ± 30 %" in tab.locator(
@@ -221,6 +223,87 @@ def test_undo_works_from_a_slider_and_a_name_has_whole_characters(tab: Any) -> N
     tab.locator("input[type=range]").first.focus()
     tab.keyboard.press("Control+z")
     assert tab.locator("#name").input_value() == "CSG-20-100"
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_undo_in_a_field_is_that_of_the_page_unless_its_text_is_new(tab: Any) -> None:
+    k1 = "workbench.then(each => each.state.drive.gear.stiffness.k1)"
+    field = tab.locator("#field-gear\\.stiffness\\.k1")
+    before = field.input_value()
+    for undo, redo in (("Control+z", "Control+y"), ("Control+z", "Control+Shift+z")):
+        field.click()
+        tab.keyboard.press("Control+a")
+        tab.keyboard.type("5")
+        tab.keyboard.press("Enter")
+        tab.keyboard.press(undo)
+        assert (field.input_value(), tab.evaluate(k1)) == (before, 13719.5)
+        assert tab.evaluate("document.activeElement.id") == "field-gear.stiffness.k1"
+        tab.keyboard.press(redo)
+        assert (field.input_value(), tab.evaluate(k1)) == ("5", pytest.approx(5.0 * 10800.0 / np.pi))
+        tab.keyboard.type("7")  # not taken yet
+        tab.keyboard.press("Control+z")
+        assert (field.input_value(), tab.evaluate(k1)) == ("5", pytest.approx(5.0 * 10800.0 / np.pi))
+        tab.keyboard.press("Control+z")
+        assert (field.input_value(), tab.evaluate(k1)) == (before, 13719.5)
+    tab.locator("#name").click()
+    assert tab.evaluate(k1) == 13719.5
+    amplitude = tab.locator("#run .controls label", has_text="amplitude").locator("input")
+    shown = amplitude.input_value()
+    amplitude.fill("7")
+    amplitude.press("Enter")
+    amplitude.press("Control+z")
+    assert amplitude.input_value() == shown
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_the_units_of_a_controller_are_those_of_its_motor(tab: Any) -> None:
+    tab.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    limit = tab.locator(".row", has=tab.locator("#field-control\\.limit"))
+    assert limit.locator("label small").first.text_content() == "N·m"
+    assert limit.locator(".doc").first.text_content().startswith("Largest torque, of either sign [N·m]")
+    proportional = tab.locator("#field-control\\.proportional")
+    gain = tab.evaluate("workbench.then(each => each.state.drive.control.proportional)")
+    proportional.fill(f"{2.0 * gain} N.m/rad")
+    proportional.press("Enter")
+    assert tab.evaluate("workbench.then(each => each.state.drive.control.proportional)") == pytest.approx(2.0 * gain)
+    assert "motor and load are assumed; some numbers of the controller are assumed" in readings(tab)["run"]
+    for motor, unit in (("dc", "V"), ("current_source", "A"), ("torque_source", "N·m")):
+        tab.locator("#law-motor").select_option(motor)
+        assert limit.locator("label small").first.text_content() == unit
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_a_link_to_a_number_scrolls_the_form_alone_and_a_gear_opens_at_the_top(tab: Any) -> None:
+    readings(tab)
+    tab.evaluate("scrollTo(0, 40)")
+    tab.locator("#loop .strongest button").first.evaluate("each => each.click()")
+    top = "[document.activeElement.getBoundingClientRect().top, innerHeight]"
+    place, height = tab.evaluate(top)
+    assert tab.evaluate("document.activeElement.id") == "field-gear.hysteresis.breakaway.0"
+    assert tab.evaluate("scrollY") == 40
+    assert tab.evaluate("document.getElementById('form').scrollTop") > 0
+    assert 0 < place < height
+    tab.evaluate("scrollTo(0, 300)")
+    tab.locator("#catalogue").select_option("hfuc-25-100")
+    assert tab.evaluate("[scrollY, document.getElementById('form').scrollTop]") == [0, 0]
+
+
+@needs_page
+@pytest.mark.slow("report")
+def test_the_pointer_reads_the_next_order(tab: Any) -> None:
+    shown = readings(tab)["orders"]
+    box = tab.locator("#orders .u-over").bounding_box()
+    words = set()
+    for share in np.linspace(0.02, 0.3, 40):
+        tab.locator("#orders .u-over").hover(position={"x": share * box["width"], "y": 0.5 * box["height"]})
+        words.add(tab.locator("#orders .at").text_content())
+    amplitude = re.search(r"largest (.*) of order 2", shown)
+    assert amplitude
+    assert f"order 2: {amplitude[1]}" in words
+    assert "order 1: " in " ".join(words)
 
 
 @needs_page

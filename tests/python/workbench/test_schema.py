@@ -76,6 +76,44 @@ def test_python_and_file_of_the_page_give_the_same_drive(drives: list[sw.Drive],
 
 
 @needs_node
+def test_the_mark_of_a_number_is_the_state_that_its_source_states() -> None:
+    marks = {
+        ("identified from a.csv", "0.2"): "identified ± 0.2",
+        ("identified from a.csv", None): "identified",
+        ("identified in combination: a.csv determines k1 + k2", "0.2"): "in combination",
+        ("fitted but not identified: its wave is too small", "0.2"): "not determined",
+        ("not determined by: a.csv", None): "not determined",
+        ("assumed: none", None): "assumed",
+        ("not given", None): "by default",
+        ("maker's catalogue, torsional stiffness", None): "maker's catalogue",
+        ("data sheet; K1", "0.2"): "data sheet",
+        ("set in the workbench", None): "set in the workbench",
+        ("weighed on the kitchen scale of the laboratory", None): "weighed on the kitchen scale …",
+    }
+    assert in_node("states", entries=list(marks)) == list(marks.values())
+
+
+@needs_node
+def test_the_units_of_a_controller_are_those_of_what_the_motor_takes() -> None:
+    def of(unit: str, *controllers: str) -> list[dict[str, list[str]]]:
+        found = in_node("units", schema=schema(), controllers=[f"control.{name}" for name in controllers], unit=unit)
+        return [{name: rest for name, *rest in fields} for fields in found]
+
+    pid, loop, cascade = of("N.m", "PID", "PositionSpeed", "Cascade")
+    assert pid["integral"] == ["N.m/(rad.s)", "Torque per integral of the input angle error"]
+    assert pid["limit"] == ["N.m", "Largest torque, of either sign"]
+    assert loop["speed_integral"][0] == "N.m/rad"
+    assert loop["position_gain"] == ["1/s", "Input speed per error of the input angle"]
+    assert cascade["voltage_limit"][0] == "V"
+    (feedback,) = of("A", "StateFeedback")
+    assert feedback["current"] == ["A/A", "Current k_5 taken away per current"]
+    (accelerated,) = of("rad/s2", "PI")
+    assert accelerated["proportional"][0] == "rad.s-2.s/rad"
+    (kept,) = of("V", "PID")
+    assert kept["proportional"] == ["V/rad", "Voltage per input angle"]
+
+
+@needs_node
 def test_a_link_carries_data_alone() -> None:
     gear_set = GearSet.read("hfuc-25-100")
     data: dict[str, Any] = {"name": "é ′", "drive": changed(drive_around(gear_set)), "view": {"run": {"amplitude": 0.1}}}

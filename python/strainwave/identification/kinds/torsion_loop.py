@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +24,8 @@ from strainwave.identification.candidates.torsion import (
     held_out_blocks,
     plain_error,
 )
-from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE
+from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE, asymmetry_in_words
+from strainwave.identification.candidates.torsion.losses import LossLoop, loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, OVER_LOOP, explained, judged_shape
@@ -33,7 +35,7 @@ from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
-from strainwave.identification.reading.roles import Column, ColumnRoles, measured, needed, pair
+from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed, pair
 from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit
@@ -55,6 +57,8 @@ MIN_INTERVAL_OF_STEPS = 1.0  # s between rows of a shaft that is loaded in steps
 MAX_OFF_COMPUTED = 0.02  # of a torque's standard deviation: hysteresis of any gear leaves more beside a multiple of the twist
 SERIES_STIFFNESS = "series_stiffness"  # of a spring behind the gear
 GAIN_PLACES = 360  # of the turn of the input at which a loop may begin
+MIN_LOOPS_OF_SOURCES = 2  # that differ in load, side, rate or temperature separate sources of loss
+LOSS_NAME, LOSS_TITLE = "all torsion loops", "the loss of a cycle by its source"
 FRICTION_KINDS = {"friction", "effort"}  # kinds that determine the friction inside a loop at the input
 
 
@@ -62,6 +66,7 @@ class Torsion(Kind):
     """Twist and torque at the output, or angle and torque of the input with the output locked."""
 
     needs = "twist and torque, or input_angle and input_torque"
+    time = "used"
 
     def recognises(self, columns: Sequence[Column], mapping: FileMapping) -> bool:
         """True for a twist and a torque, or for an angle and a torque if the angle may be a twist: a turning shaft is none.
@@ -94,10 +99,11 @@ class Torsion(Kind):
         shape = f"a torsion loop with {turns} reversal{'s' if turns > 1 else ''}" if turns else branch
         why = f"its columns are {both}, {rows} rows: {shape}"
         side = mapping.side or torque.channel.side or angle.channel.side or ("output" if twist else None)
+        conditions = {**first(columns, "time"), **first(columns, "temperature")}
         if side == "input":
             locked = "the output was locked, and the friction of the input is in the loop"
             of_input = f"angle and torque are those of the input: {locked}"
-            return ColumnRoles(self.name, {"input_angle": angle, "input_torque": torque}, side, (why, of_input))
+            return ColumnRoles(self.name, {**conditions, "input_angle": angle, "input_torque": torque}, side, (why, of_input))
         of_side = ["twist and torque are those of the output"]
         if side is None:
             of_side.append(_why_output(angle, torque))
@@ -111,7 +117,7 @@ class Torsion(Kind):
                 "the friction of the gear write time, the angle of the motor and the current to a file of their own"
                 for current in measured(columns, "current")
             )
-        return ColumnRoles(self.name, {"twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
+        return ColumnRoles(self.name, {**conditions, "twist": angle, "torque": torque}, "output", (why, *of_side), remarks)
 
     def turn(self, file: Recognised, kinds: Collection[str]) -> tuple[str, int]:
         """Return its turn: loops at the output go first, as they separate hysteresis from friction."""
@@ -125,7 +131,8 @@ class Torsion(Kind):
         loop = TorsionLoop.of(file.recording, gear)
         friction_measured = "friction_input" in known.determined
         training = held_out_blocks(len(loop.twist))
-        best, *others = fit_loop(loop, gear, training, friction_measured=friction_measured)
+        best, *others = fits = fit_loop(loop, gear, training, friction_measured=friction_measured)
+        odd = [each for each in others if not each.is_one_sided]
         in_series = loop.input_ratio is None and _series_stiffness(file.recording["twist"], file.recording["torque"])
         of_set = () if in_series else stiffness_of_loop(file.recording, best.fit, start, name)
         checks = [clipping(file.recording, name), *of_set]
@@ -141,7 +148,8 @@ class Torsion(Kind):
             name, file, best.name, estimates,
             (
                 *file.remarks, *_remarks(file.recording, loop, best, gear, friction_measured, start),
-                *_of_error(gain_sigma, loop), *shaped.remarks, *_of_richer_model(best, others, left),
+                *asymmetry_in_words(fits),
+                *_of_error(gain_sigma, loop), *shaped.remarks, *_of_richer_model(best, odd, left),
             ),
             (*checks, *([] if any(check.failed for check in checks) else [whole, *shaped.checks])),
             pictures=(Picture(fit.curves()[0], "loop", "torque" + _place(loop)),),
@@ -167,6 +175,22 @@ class Torsion(Kind):
         if isinstance(best.dissipation, InputFriction):
             parts |= {"friction_input"}
         return result, known.with_fit(fit.gear, parts, estimates, name).judged("stiffness", estimates)
+
+    def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
+        """Split the loss of all loops by its source."""
+        gear, loops = known.gear_set.gear, list[Recording]()
+        for file in files:
+            recording = file.at_ratio(gear.kinematics.ratio).recording
+            with suppress(ValueError):  # a branch, or a loop of several amplitudes
+                LossLoop.of(recording, gear)
+                loops.append(recording)
+        if len(loops) < MIN_LOOPS_OF_SOURCES:
+            return (), known
+        try:
+            shares = loss_shares(loops, gear)
+        except ValueError as error:
+            return (FileResult(LOSS_NAME, what=LOSS_TITLE, refused=str(error)),), known
+        return (FileResult(LOSS_NAME, what=LOSS_TITLE, model=shares.in_words, remarks=shares.lines),), known
 
     def rank(self, file: Recognised, known: GearSoFar) -> tuple[Ranked, ...]:
         """Return all springs and hysteresis laws by their error on data held out."""
@@ -288,7 +312,8 @@ def _remarks(
     yield from _of_friction(loop, best, gear, friction_measured)
     yield from thinned(loop.samples, len(loop.twist))
     yield from hint_of_ratio(best.fit, start.gear)
-    yield from unused(recording, ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque"))
+    used = ("input_angle", "input_torque") if at_input(recording) else ("twist", "torque")
+    yield from unused(recording, (*used, "time", "temperature"))
     if isinstance(best.dissipation, Nothing):
         yield (
             "one branch only: it determines neither hysteresis nor zeros, so the hysteresis is kept, and the gear is taken to "

@@ -3,23 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.files.entries import Entry
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.kinds.kind import Kind
 from strainwave.identification.reading.mapping import FileMapping
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, names_of, pair, sides_of_angles
 from strainwave.identification.results.file_result import FileEstimate, FileResult
-from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar
+from strainwave.identification.results.gear_so_far import ERROR_AMPLITUDE, GearSoFar, is_of
 from strainwave.identification.results.pictures import Picture
+from strainwave.messages import listed
+from strainwave.orders.over_temperature import ErrorOverTemperature, error_over_temperature
 from strainwave.orders.two_encoders import WHY_AMPLITUDES_CHANGE, TransmissionError, transmission_error
 from strainwave.questions import QuestionError
 
+if TYPE_CHECKING:
+    from strainwave import kinematic_error
+
 Array = NDArray[np.float64]
+OVER_TEMPERATURE = "kinematic error over the temperature"
+RATIO_OPTION = "--constant ratio=NUMBER"
 TURN_BINS = 72  # parts of a turn of the input: order 8 has nine of them
 
 
@@ -45,11 +57,30 @@ class TwoEncoders(Kind):
     def fit(self, file: Recognised, known: GearSoFar) -> tuple[FileResult, GearSoFar]:
         """Fit the orders of the kinematic error."""
         given = file.constants.get("ratio")
-        errors = transmission_error(file.recording, ratio=given, ratio_option="--constant ratio=NUMBER")
+        errors = transmission_error(file.recording, ratio=given, ratio_option=RATIO_OPTION)
         name = file.path.name
         remarks, pictures = (*file.remarks, *errors.remarks), (picture_of_turn(errors), Picture(curves_of_orders(errors)))
-        result = FileResult(name, file, "orders of the input", tuple(orders_of(errors)), remarks, pictures=pictures)
+        estimates = tuple(_at_its_temperature(file, errors))
+        result = FileResult(name, file, "orders of the input", estimates, remarks, pictures=pictures)
         return result, with_error(known, errors, name)
+
+    def fit_together(self, files: Sequence[Recognised], known: GearSoFar) -> tuple[tuple[FileResult, ...], GearSoFar]:
+        """Fit the kinematic error over the temperature, if the temperatures of the files differ enough."""
+        measured_at = list[tuple[Recognised, float, TransmissionError]]()
+        for file in files:
+            if np.isfinite(temperature := temperature_of(file)):
+                with suppress(ValueError):  # one that cannot be used, as its own result states
+                    errors = transmission_error(file.recording, ratio=file.constants.get("ratio"), ratio_option=RATIO_OPTION)
+                    measured_at.append((file, temperature, errors))
+        temperatures = [at for _, at, _ in measured_at]
+        if not temperatures or np.ptp(temperatures) < MIN_TEMPERATURE_SPAN:
+            return (), known
+        found = error_over_temperature([errors for *_, errors in measured_at], temperatures)
+        names = [file.path.name for file, *_ in measured_at]
+        determined_by = {file for path, file in known.determined_by.items() if is_of(path, {"kinematic_error"})}
+        is_own = bool(found.orders) and determined_by <= set(names)
+        after = with_error_over_temperature(known, found, names) if is_own else known
+        return (result_over_temperature(found, names),), after
 
 
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:
@@ -64,6 +95,54 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
         return known.with_parts({"kinematic_error": law}, sigmas, f"{name}, at {found.speeds}" if found.speeds else name)
     entries = {path: Entry(f"identified in combination: {_why(found)}", uncertainty=sigma) for path, sigma in sigmas.items()}
     return known.with_sums({"kinematic_error": law}, entries, name)
+
+
+def temperature_of(file: Recognised) -> float:
+    """Return the temperature of a file [K]: its mean, or as given with it; not a number if it is not known."""
+    if "temperature" in file.recording:
+        return float(np.mean(file.recording.values("temperature", "K")))
+    return file.constants.get("temperature", np.nan)
+
+
+def with_error_over_temperature(known: GearSoFar, found: ErrorOverTemperature, names: Sequence[str]) -> GearSoFar:
+    """Return the set with a kinematic error that depends on the temperature, or its mean if no order changes."""
+    whole, mean = found.law, cast("kinematic_error.Fourier", found.law.law)
+    law, inner = (whole, "law.") if whole.order else (mean, "")
+    by_order = {each.order: each for each in found.orders}
+    sigmas = {}
+    for i, order in enumerate(mean.order):
+        sigmas[f"gear.kinematic_error.{inner}amplitude[{i}]"] = by_order[order].amplitude_sigma
+        sigmas[f"gear.kinematic_error.{inner}phase[{i}]"] = by_order[order].phase_sigma
+    for i, (order, change) in enumerate(zip(whole.order, whole.change, strict=True)):
+        sigmas[f"gear.kinematic_error.change[{i}]"] = by_order[order].change_sigma
+        sigmas[f"gear.kinematic_error.phase[{i}]"] = by_order[order].change_sigma / change
+    return known.with_parts({"kinematic_error": law}, sigmas, listed(names))
+
+
+def result_over_temperature(found: ErrorOverTemperature, names: Sequence[str]) -> FileResult:
+    """Return the changes of the orders over the temperature as a result of all files."""
+    columns = {"temperature": np.array(found.temperatures)}
+    why = (f"{listed(names)} are records of two encoders at several temperatures",)
+    file = Recognised(Path(OVER_TEMPERATURE), "encoders", {}, {}, None, why, (), {}, Recording(columns, {"temperature": "K"}))
+    estimates = tuple(
+        FileEstimate(
+            f"gear.kinematic_error.change of order {each.order:g}",
+            "rad/K",
+            each.change,
+            each.change_sigma,
+            "temperature_dependent",
+            "" if each.significant else f"noise alone gives as much with a probability of {each.false_alarm:.2g}",
+        )
+        for each in found.orders
+    )
+    return FileResult(OVER_TEMPERATURE, file, "straight lines", estimates, found.remarks, what=OVER_TEMPERATURE)
+
+
+def _at_its_temperature(file: Recognised, found: TransmissionError) -> Iterator[FileEstimate]:
+    """Yield the orders of a file; those at different temperatures are not compared."""
+    degrees = temperature_of(file)
+    for each in orders_of(found):
+        yield replace(each, law=f"at {degrees:.0f} K") if np.isfinite(degrees) else each
 
 
 def orders_of(found: TransmissionError) -> Iterator[FileEstimate]:

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 MAX_FILES = 200  # of one recorder: each is read once for each of its alternatives
 MIN_STEPS_BETWEEN, MAX_STEPS_BETWEEN = 0.2, 3.0  # of the clock, from the last row of a file to the first of the next
 MAX_STEP_BETWEEN = 3.0  # largest steps of an angle, from the last row of a file to the first of the next
+CONDITIONS = {"time", "temperature"}  # two measurements may share these
+MIN_COMMON_CHANNELS = 2  # besides conditions, of two files that may contain one measurement
 MAX_OFF_NUMBER = 1e-3  # of the range, between two readings of one number
 MAX_OFF_RUN = 4e-3  # usual deviations, between two encoders of one drive that moved once, but for scale and zero
 MAX_OFF_EFFORT = 0.2  # of the same: as much as noise and delay make
@@ -159,8 +161,9 @@ def _are_alike(one: Recognised, other: Recognised) -> bool:
     """True if two files of one kind contain one measurement."""
     if one.kind in ("log", "encoders"):
         return _are_one_run(one.recording, other.recording)
-    pairs = [(one.recording[name], other.recording[name]) for name in one.recording.names if name in other.recording]
-    if len(one.recording) != len(other.recording) or len(pairs) < 2:
+    common = [name for name in one.recording.names if name in other.recording]
+    pairs = [(one.recording[name], other.recording[name]) for name in common]
+    if len(one.recording) != len(other.recording) or len(set(common) - CONDITIONS) < MIN_COMMON_CHANNELS:
         return False
     return all(bool(np.all(np.abs(a - b) <= MAX_OFF_NUMBER * max(float(np.ptp(a)), 1e-300))) for a, b in pairs)
 

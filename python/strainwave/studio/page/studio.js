@@ -42,6 +42,7 @@ class Studio {
     if (page === "Drive") this.workbench.form.open.add("drive");
     if (page in SHEETS) this.workbench.showAll();
     else this.sheets[page].shown();
+    this.workbench.toTop();
   }
   say(text, bad = false) { this.workbench.say(text, bad); }
   // ---- The server ----------------------------------------------------------------------------------------------------
@@ -59,7 +60,7 @@ class Studio {
   ask(message) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
     else if (message.do === "start") this.take({ problem: "The server does not answer: start strainwave studio again, then run." });
-    else this.waiting = [...this.waiting.filter((each) => each.do !== message.do), message];
+    else this.waiting = [...this.waiting.filter((each) => each.do !== message.do || message.do === "cancel"), message];
   }
   take(message) {
     if (message.files) { this.files = message.files; this.opened = message.opened; for (const sheet of Object.values(this.sheets)) sheet.filesChanged(); }
@@ -122,9 +123,8 @@ class Sheet {
   get takesFiles() { return this.form.fields.some(({ kind }) => kind === "files" || kind === "file"); }
   shown() { this.build(); }
   problem(text, of) {
-    if (this.element.hidden) return;
-    this.message.textContent = of === "read" ? "" : text;
-    if (of === "read") this.readBox.replaceChildren(element("p", { className: "problem" }, text));
+    if (of === "read" && this.page === "Identify") this.readBox.replaceChildren(element("p", { className: "problem" }, text));
+    else if (of !== "read" && !this.element.hidden) this.message.textContent = text;
   }
   // ---- The form ------------------------------------------------------------------------------------------------------
   build() {
@@ -237,7 +237,7 @@ class Sheet {
     return element("label", { className: "side" }, "side of the numbers ", menu);
   }
   column({ column, channel, unit, assumed, low, high, si }) {
-    const menu = element("select", { "aria-label": `what ${column} is` }, element("option", { value: "" }, "not used"), ...CHANNELS.map((each) => element("option", { value: each, selected: each === channel }, label(each))));
+    const menu = element("select", { "aria-label": `what ${column} is` }, element("option", { value: "", disabled: Boolean(channel) }, "not used"), ...CHANNELS.map((each) => element("option", { value: each, selected: each === channel }, label(each))));
     menu.onchange = () => {
       const others = (this.values.column ?? []).filter((each) => !each.endsWith(`=${column}`) && !each.startsWith(`${menu.value}=`));
       this.values.column = menu.value ? [...others, `${menu.value}=${column}`] : others;
@@ -302,7 +302,7 @@ class Sheet {
     if (question) box.append(isNewest ? this.question(question, () => this.start()) : element("p", {}, question.text));
     if (lines.length) box.append(element("pre", { tabIndex: 0, "aria-label": "output" }, lines.join("\n")));
     const link = (name) => element("a", { href: `results/${id}/${name.split("/").map(encodeURIComponent).join("/")}`, target: "_blank", rel: "noopener" }, name);
-    if (files.length) box.append(element("p", { className: "links" }, ...files.filter((name) => !name.includes("/")).flatMap((name) => [link(name), " "])));
+    if (files.length) box.append(element("p", { className: "links" }, ...files.filter((name) => !name.includes("/") && name !== "workbench.html").flatMap((name) => [link(name), " "])));
     if (files.includes("gear.toml")) {
       const open = element("button", { type: "button" }, "Open gear.toml in the pages Gear and Drive");
       open.onclick = () => this.studio.ask({ do: "gear", values: { name: `${id}/gear.toml` } });

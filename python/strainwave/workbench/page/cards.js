@@ -13,7 +13,8 @@ function sharedByPlots(of) {
   };
 }
 const listed = (names) => [names.slice(0, -1).join(", "), names.at(-1)].filter(Boolean).join(" and ");
-const sentence = (names) => `${listed(names)} ${names.length > 1 ? "are" : "is"} assumed`;
+/** Which parts are assumed, and which have assumed numbers; empty if none. */
+const assumedText = (whole, inPart) => [whole.length && `${listed(whole)} ${whole.length > 1 ? "are" : "is"} assumed`, inPart.length && `some numbers of ${listed(inPart)} are assumed`].filter(Boolean).join("; ");
 const extentOf = (values) => Math.max(...values) - Math.min(...values);
 
 /** A plot of the page. `shared` has the loop and the error that several plots draw. A plot that `takes` measured data names their slot. */
@@ -24,6 +25,8 @@ class Card {
   unit(of) { return this.page.unit(of); }
   get perAngle() { return this.page.unitOf("N.m/rad"); }
   axis(label, { text, factor }) { return { label: `${label} [${text}]`, factor }; }
+  /** What stands beside the pointer at a place of the plot, in the units of the axes. */
+  textAt(x, y) { return `${shortText(x)}, ${shortText(y)}`; }
   text(value, { text, factor }) { return `${shortText(value / factor)} ${text}`; }
   /** A curve in the units of the axes, of this gear or of the one that was kept. */
   curve(points, which, more = {}) {
@@ -46,7 +49,7 @@ class LoopCard extends Card {
   of(sets, which) {
     const loop = this.shared.loop(sets), { width, stiffness, loss } = numbersOfLoop(loop);
     const numbers = [["loop width", this.text(width, this.unit("angle"))], ["mean stiffness", this.text(stiffness, this.perAngle)], ["loss a cycle", `${shortText(loss)} J`]];
-    if (which === "one" && this.page.assumes("hysteresis")) numbers.push(["from assumed numbers", ""]);
+    if (which === "one" && this.page.assumes("gear", "hysteresis")) numbers.push(["from assumed numbers", ""]);
     return { curves: [this.curve({ x: loop.twist, y: loop.torque }, which)], numbers };
   }
   residual({ x, y }) {
@@ -63,7 +66,7 @@ class StiffnessCard extends Card {
   axes() { return [this.axis("torque", this.unit("torque")), this.axis("stiffness", this.perAngle)]; }
   of(sets, which) {
     const slopes = slopesOfLoop(this.shared.loop(sets)), finite = slopes.y.filter(Number.isFinite);
-    return { curves: [this.curve(slopes, which)], numbers: [["from", this.text(Math.min(...finite), this.perAngle)], ["to", this.text(Math.max(...finite), this.perAngle)]] };
+    return { curves: [this.curve(slopes, which)], numbers: [["of spring and hysteresis together: from", this.text(Math.min(...finite), this.perAngle)], ["to", this.text(Math.max(...finite), this.perAngle)]] };
   }
 }
 
@@ -80,14 +83,14 @@ class RunCard extends Card {
     return `${this.text(value, unit)}${unit.factor === 1 ? "" : ` = ${shortText(value)} ${si.replace(".", "·")}`}`;
   }
   of(sets, which) {
-    const run = runOf(this.core, sets, this.view.run, this.output[0]), assumed = this.page.assumedParts(), curves = [this.curve({ x: run.time, y: run.output }, which)];
+    const run = runOf(this.core, sets, this.view.run, this.output[0]), assumed = assumedText(this.page.assumedParts(), this.page.partsWithAssumed()), curves = [this.curve({ x: run.time, y: run.output }, which)];
     const numbers = [["at the end", this.both(run.output.at(-1))], ["largest", this.both(Math.max(...run.output.map(Math.abs)))]];
     if (which === "one" && SHOWN_COMMANDS[this.view.run.shown] === this.page.commandUnit()) {
       curves.push(this.besides({ x: run.time, y: run.command }));
       numbers.push(["grey dashes:", "command"]);
     }
     if (run.reason) numbers.push(["stopped:", run.reason]);
-    if (which === "one" && assumed.length) numbers.push([sentence(assumed), ""]);
+    if (which === "one" && assumed) numbers.push([assumed, ""]);
     return { curves, numbers };
   }
 }
@@ -153,6 +156,11 @@ class ErrorCard extends Card {
 class OrdersCard extends Card {
   key = "orders";
   title = "Orders of the error";
+  /** The amplitude of the order next to the pointer. */
+  textAt(x) {
+    const { x: orders, y } = ordersOf(this.shared.error(this.page.sets)), place = Math.min(Math.max(Math.round(x), 1), orders.length) - 1;
+    return `order ${orders[place]}: ${this.text(y[place], this.unit("angle"))}`;
+  }
   axes() { return [{ label: "periods a turn of the input", factor: 1 }, this.axis("amplitude", this.unit("angle"))]; }
   of(sets, which) {
     const { x, y } = ordersOf(this.shared.error(sets)), largest = Math.max(...y);

@@ -2,6 +2,7 @@
 
 const FINE = 1.01, COARSE = 1.1; // factors of the arrow keys, without and with Shift
 const DIGITS = 7, MAX_SHOWN = 11; // of a number in its field, which is that wide
+const MAX_MARK = 30; // characters of the source beside a number
 const OCTAVES = 2; // of a slider, to either side
 const words = (name) => name.replaceAll("_", " ");
 
@@ -65,11 +66,13 @@ class Form {
       };
       made.append(element("div", { className: "law" }, menu));
     }
+    const { motor } = this.get(), motorModel = modelOf(this.schema, this.schema.models.Drive.fields.find(({ name }) => name === "motor"), motor);
+    const fields = id.startsWith("control.") ? fieldsWithMotor(model.fields, this.schema.models[motorModel].command) : model.fields;
     const help = element("details", { className: "help" }, element("summary", {}, model.doc || field.doc),
       element("div", { innerHTML: model.help ?? "" }), element("p", {}, `Source: ${model.source}`), element("p", {}, "Python: ", element("code", {}, `sw.${id}`)));
     made.append(help);
-    made.append(...model.fields.flatMap((inner) => (inner.kind === "part" ? [this.part(inner, value[inner.name], [...path, inner.name])]
-      : this.member(inner, value[inner.name], [...path, inner.name], model.fields, value))));
+    made.append(...fields.flatMap((inner) => (inner.kind === "part" ? [this.part(inner, value[inner.name], [...path, inner.name])]
+      : this.member(inner, value[inner.name], [...path, inner.name], fields, value))));
     return made;
   }
   /** Rows of a parameter. Sequences of a model that are as long, as orders and amplitudes, grow and shrink together. */
@@ -133,7 +136,7 @@ class Form {
       const value = Math.min(field.max ?? Infinity, Math.max(field.min ?? -Infinity, whole ? Math.round(next) : next));
       if (problemOf(field, value)) return;
       this.set(path, value, false);
-      input.value = this.shown(row);
+      this.showValue(row);
     };
     slider.onchange = () => { base = null; slider.value = 0; this.set(path, valueAt(this.get(), path), true); };
     this.rows.set(key, row);
@@ -150,15 +153,17 @@ class Form {
     if (field.kind === "whole" || field.kind === "count") return String(value);
     return text.length > MAX_SHOWN ? value.toExponential(DIGITS - 1).replace(/\.?0+e/, "e") : text;
   }
+  /** The text of a number, which is that of its field until someone types. */
+  showValue(row) { row.input.value = row.input.defaultValue = this.shown(row); }
   refresh(row) {
-    row.input.value = this.shown(row);
+    this.showValue(row);
     row.input.classList.remove("wrong");
     row.input.setCustomValidity("");
     this.showSource(row);
   }
   showSource({ path, mark, source, made, factor }) {
     const [text, spread, sigma] = this.entryOf(path), deviation = sigma !== null && shortText(sigma / factor, 2);
-    mark.textContent = deviation && text.startsWith("identified") ? `identified ± ${deviation}` : text.startsWith("assumed") ? "assumed" : "";
+    mark.textContent = stateOf(text, deviation);
     const more = [spread !== null && `single gears scatter by ± ${shortText(100 * spread, 2)} %`, deviation && `standard deviation ${deviation}`].filter(Boolean);
     made.title = source.textContent = [`Source: ${text}`, ...more].join("; ");
   }
@@ -168,6 +173,17 @@ class Form {
       if (row.made.contains(document.activeElement)) this.explain(row);
     }
   }
+}
+
+/** The state of a number by its source; of one that was published or measured apart, the first words of the source. */
+function stateOf(source, deviation) {
+  if (source.startsWith("identified in combination")) return "in combination";
+  if (source.startsWith("identified")) return deviation ? `identified ± ${deviation}` : "identified";
+  if (/^(fitted|not determined)/.test(source)) return "not determined";
+  if (source.startsWith("assumed")) return "assumed";
+  if (source === "not given") return "by default";
+  const [first] = source.split(/[,;:]/);
+  return first.length > MAX_MARK ? `${first.slice(0, MAX_MARK - 1)}…` : first;
 }
 
 /** Scale of a slider whose number is zero: the default of its field, else an angle of a turn, else one. */

@@ -58,6 +58,15 @@ function problemOf(field, value) {
   return "";
 }
 
+const COMMANDED = { V: "voltage", A: "current", "N.m": "torque", "rad/s2": "acceleration" }; // by a controller, by its unit
+/** The fields of a controller in the unit of its motor. They are described in that of `limit`, which is a voltage or a current. */
+function fieldsWithMotor(fields, unit) {
+  const own = fields.find(({ name }) => name === "limit")?.unit, written = unit === "rad/s2" ? "rad.s-2" : unit;
+  if (!["V", "A"].includes(own) || own === unit) return fields;
+  const docOf = (doc) => doc.replace(new RegExp(COMMANDED[own], "i"), (word) => (word[0] < "a" ? COMMANDED[unit][0].toUpperCase() + COMMANDED[unit].slice(1) : COMMANDED[unit]));
+  return fields.map((field) => ({ ...field, unit: field.unit.replace(new RegExp(`\\b${own}\\b`), written), doc: field.unit.includes(own) ? docOf(field.doc) : field.doc }));
+}
+
 /** The laws, whole numbers and numbers of a model, in the order of the compiled core, with path and field of each number. */
 function flattened(schema, id, values) {
   const parts = { laws: [], shape: [], numbers: [], paths: [], fields: [] };

@@ -12,6 +12,7 @@ const EFFECT = 1.1; // factor of a number whose effect is shown
 const MAX_BLOCK = 12; // ms: effects of many numbers are computed in pieces as long
 const MIN_EFFECT = 5e-5; // relative change: a smaller one is not shown
 const MAX_STRONGEST = 4; // numbers below a plot
+const DRIVE_PARTS = { motor: "motor", control: "controller", load: "load" }; // of a drive, by name
 const SIGNS = { "N.m": "N·m", "mN.m": "mN·m", "kgf.m": "kgf·m", "kgf.cm": "kgf·cm" };
 
 const by = (id) => document.getElementById(id);
@@ -60,6 +61,8 @@ function pointsFrom(given) {
 /** Places of the numbers of these parts in a set, but for whole ones. */
 const placesOf = (set, parts) => set.paths.flatMap((path, i) => (parts.includes(path.split(".")[0]) && ["number", "sequence"].includes(set.fields[i].kind) ? [i] : []));
 
+/** True if the browser itself undoes in an element: a field of another page, or one whose text the page does not have yet. */
+const isTyped = (field) => Boolean(field?.matches("input:not([type=range]), textarea") && (!field.closest("#form, #plots, #name") || field.value !== field.defaultValue));
 /** A name of one line, of whole characters. */
 const nameFrom = (text) => lineFrom(text.slice(0, 80));
 /** A relative change in percent, as "+3.3 %". */
@@ -106,8 +109,13 @@ class Workbench {
   }
   /** The parts of the drive as the page assumes them. */
   assumedParts() {
-    const { drive, origin } = this.state, names = { motor: "motor", control: "controller", load: "load" };
-    return Object.keys(names).filter((part) => origin.drive && !origin.parts.includes(part) && sameValues(drive[part], origin.drive[part])).map((part) => names[part]);
+    const { drive, origin } = this.state;
+    return Object.keys(DRIVE_PARTS).filter((part) => origin.drive && !origin.parts.includes(part) && sameValues(drive[part], origin.drive[part])).map((part) => DRIVE_PARTS[part]);
+  }
+  /** The other parts of which a number is assumed. */
+  partsWithAssumed() {
+    const whole = this.assumedParts();
+    return Object.keys(DRIVE_PARTS).filter((part) => !whole.includes(DRIVE_PARTS[part]) && this.assumes(part)).map((part) => `the ${DRIVE_PARTS[part]}`);
   }
   change(state, done, rebuild = false) {
     this.state = state;
@@ -126,8 +134,10 @@ class Workbench {
     this.state = this.saved = from.pop();
     this.showAll();
   }
+  /** Shows the top of the page and of the form, for a gear that was opened. */
+  toTop() { by("form").scrollTop = 0; scrollTo(0, 0); }
   showAll() {
-    by("name").value = this.state.name;
+    by("name").value = by("name").defaultValue = this.state.name;
     this.form.build();
     this.buildControls();
     this.draw();
@@ -144,7 +154,7 @@ class Workbench {
     if (unit === "rad/s") return speed;
     if (unit === "N.m") return torque;
     if (unit === "N.m/rad") return { factor: torque.factor / angle.factor, text: `${torque.text}/${angle.text}` };
-    return { factor: 1, text: unit === "1" || !unit ? "" : unit.replaceAll(".", "·").replace(/([a-zA-Z)])(\d)/g, (_, letter, power) => letter + "⁰¹²³⁴⁵⁶⁷⁸⁹"[power]) };
+    return { factor: 1, text: unit === "1" || !unit ? "" : unit.replaceAll(".", "·").replace(/([a-zA-Z)])(-?)(\d)/g, (_, letter, minus, power) => letter + (minus && "⁻") + "⁰¹²³⁴⁵⁶⁷⁸⁹"[power]) };
   }
   say(text, bad = false) { by("status").textContent = text; by("status").classList.toggle("bad", bad); }
   // ---- Drawing -------------------------------------------------------------------------------------------------------
@@ -213,8 +223,8 @@ class Workbench {
     const shared = { loop: sharedByPlots((sets) => loopOf(this.core, sets, this.view.travel)), error: sharedByPlots((sets) => errorOverTurn(this.core, sets)) };
     return CARDS.map((kind) => new kind(this, shared));
   }
-  /** True if a number of a part of the gear is assumed. */
-  assumes(part) { return [...this.form.rows.values()].some(({ path }) => path[0] === "gear" && path[1] === part && this.entryOf(path)[0].startsWith("assumed")); }
+  /** True if a number of a part of the gear or drive is assumed. */
+  assumes(...keys) { return [...this.form.rows.values()].some(({ path }) => keys.every((key, i) => path[i] === key) && this.entryOf(path)[0].startsWith("assumed")); }
   buildCards() {
     this.cards = this.makeCards();
     by("plots").replaceChildren(...this.cards.map((card) => {
@@ -242,7 +252,7 @@ class Workbench {
       return card.element;
     }));
     for (const card of this.cards)
-      card.plot = new Plot(card.element.querySelector(".canvas"), (x, y) => { card.at.textContent = x === null ? "" : `${shortText(x)}, ${shortText(y)}`; });
+      card.plot = new Plot(card.element.querySelector(".canvas"), (x, y) => { card.at.textContent = x === null ? "" : card.textAt(x, y); });
     this.buildControls();
   }
   buildControls() {
@@ -263,12 +273,12 @@ class Workbench {
   numberControls(group, rows) {
     return rows.map(([name, label, unit]) => {
       const { factor, text } = this.unitOf(unit);
-      const input = element("input", { inputMode: "decimal", value: String(Number((this.view[group][name] / factor).toPrecision(6))) });
+      const shown = String(Number((this.view[group][name] / factor).toPrecision(6))), input = element("input", { inputMode: "decimal", defaultValue: shown, value: shown });
       input.onchange = () => {
         const value = numberOf(input.value, factor, this.schema.symbols, unit);
         const wrong = !Number.isFinite(value) ? "is no number" : POSITIVE.includes(name) && value <= 0 ? "must be above 0" : "";
         if (wrong) this.say(`${label}: ${input.value} ${wrong}`, true);
-        else this.setView([group, name], value);
+        else { input.defaultValue = input.value; this.setView([group, name], value); }
       };
       return element("label", {}, `${label} `, input, ` ${text}`);
     });
@@ -341,7 +351,10 @@ class Workbench {
     this.setView(["effect"], measure);
     by("effect").value = measure;
     row.made.closest("details:not(.help)")?.setAttribute("open", "");
-    row.input.focus();
+    row.input.focus({ preventScroll: true });
+    const form = by("form"), box = form.getBoundingClientRect(), middle = 0.5 * (Math.max(box.top, 0) + Math.min(box.bottom, innerHeight));
+    form.scrollTop += row.input.getBoundingClientRect().top - middle; // the plots stay where they are
+    row.made.scrollIntoView({ block: "nearest" }); // on a narrow screen, where the page scrolls, and at the end of the form
   }
   /** In the help of a number: the curve that it changes most, now and with twice as much, or half where that is too much. */
   explain(row) {
@@ -439,6 +452,7 @@ class Workbench {
     const wanted = rated ? { by: "torque", torque: TRAVEL_SHARE * rated } : { by: "twist", twist: VIEW.travel.twist };
     this.change({ ...this.state, name: nameFrom(name), drive: origin.drive, view: { ...this.view, travel: { ...travel, ...wanted } }, origin }, true);
     this.showAll();
+    this.toTop();
   }
   ask(title, content, use, hint = "") {
     by("text-title").textContent = title;
@@ -503,6 +517,7 @@ class Workbench {
     this.measured = pointsFrom(given.measured);
     this.change({ name: nameFrom(String(given.name ?? "")), drive: completed(this.schema, "Drive", given.drive), view: viewFrom(this.schema, given.view), zeros: zerosFrom(given.zeros), origin: this.originOfLink(given.origin) }, true);
     this.showAll();
+    this.toTop();
   }
   // ---- Begin ---------------------------------------------------------------------------------------------------------
   begin() {
@@ -511,7 +526,10 @@ class Workbench {
     by("effect").replaceChildren(...EFFECTS.map((name) => element("option", { value: name }, name)));
     this.buildCards();
     by("effect").onchange = () => this.setView(["effect"], by("effect").value);
-    by("name").onchange = () => this.change({ ...this.state, name: nameFrom(by("name").value) }, true);
+    by("name").onchange = () => {
+      by("name").defaultValue = by("name").value;
+      this.change({ ...this.state, name: nameFrom(by("name").value) }, true);
+    };
     by("catalogue").append(...Object.keys(this.catalogue).map((name) => element("option", { value: name }, name)));
     by("catalogue").onchange = () => {
       const key = by("catalogue").value, chosen = this.catalogue[key];
@@ -520,6 +538,7 @@ class Workbench {
       const origin = this.origin(key, chosen);
       this.change({ ...this.state, name: chosen.name, drive: origin.drive, view: { ...this.view, travel: { ...this.view.travel, ...chosen.travel } }, origin }, true);
       this.showAll();
+      this.toTop();
     };
     by("open").onclick = () => by("file").click();
     by("file").onchange = () => { const [file] = by("file").files; by("file").value = ""; if (file) this.openFile(file); };
@@ -543,9 +562,10 @@ class Workbench {
     by("text-close").onclick = () => by("text").close();
     by("text-copy").onclick = () => { by("text-content").select(); navigator.clipboard?.writeText(by("text-content").value).catch(() => {}); };
     addEventListener("keydown", (event) => {
-      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || document.activeElement?.matches("input:not([type=range]), textarea")) return;
+      const key = event.key.toLowerCase();
+      if (!(event.ctrlKey || event.metaKey) || (key !== "z" && key !== "y") || isTyped(document.activeElement)) return;
       event.preventDefault();
-      (event.shiftKey ? by("redo") : by("undo")).click();
+      (event.shiftKey || key === "y" ? by("redo") : by("undo")).click();
     });
     addEventListener("hashchange", () => { const fragment = location.hash.slice(1); if (fragment && fragment !== this.fragment) this.openOrSay(fragment); });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks, plain_error
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
+from tests.evidence.drawn import asymmetric_spring
+
 Array = NDArray[np.float64]
 
 ELEMENTS = sw.hysteresis.MaxwellSlip(stiffness=[8e3, 4e3], breakaway=[0.8, 1.2])
@@ -244,3 +246,10 @@ def test_plain_least_squares_of_a_loop_are_a_line_with_dry_friction() -> None:
     cubic = 4e9 * twist**3
     line = np.polyval(np.polyfit(twist, cubic, 1), twist)
     assert plain_error(twist, rubbed + cubic, parts) > 0.9 * float(np.sqrt(np.mean((cubic - line) ** 2)))
+
+
+@pytest.mark.slow("identification")
+@pytest.mark.parametrize("seed", [*range(6), 10])  # of both senses alike if odd
+def test_a_spring_that_differs_between_the_senses_is_taken_if_the_loop_shows_it(seed: int) -> None:
+    """Of other programs: a factor on the torque at negative twist, beside a slipping element and zeros that are off."""
+    assert asymmetric_spring.outcome(seed).verdict == "right"

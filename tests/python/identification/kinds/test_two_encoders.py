@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import pytest
 import strainwave as sw
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.kinds.two_encoders import curves_of_orders, orders_of, with_error
@@ -59,3 +62,43 @@ def test_orders_are_as_uncertain_as_amplitude_and_phase_make_them() -> None:
     np.testing.assert_allclose(curves["sigma"], sigma, rtol=1e-9)
     assert np.sqrt(np.mean(off**2)) < 3.0 * np.sqrt(np.mean(sigma**2))
     np.testing.assert_array_equal(curves["residual"], found.curves["residual"])
+
+
+def recorded(folder: Path, degrees: float, place: int, rate: float) -> Path:
+    """A file of two encoders at a temperature [°C], of a gear whose order 2 grows by a rate [rad/K]; each moves differently."""
+    time = np.arange(0.0, 20.0, 0.02)
+    theta = (30.0 + place) * np.sin(0.5 * time + 0.1 * place)
+    error = (3e-4 + rate * (degrees - 20.0)) * np.sin(2.0 * theta + 0.3)
+    output = -theta / 100.0 - error + np.random.default_rng(place).normal(0.0, 1e-5, len(time))
+    columns = {"time": time, "input_angle": theta, "output_angle": output, "temperature": np.full(len(time), degrees)}
+    units = {"time": "s", "input_angle": "rad", "output_angle": "rad", "temperature": "degC"}
+    path = folder / f"record-{place}.csv"
+    sw.Recording(columns, units).to_csv(path)
+    return path
+
+
+def test_files_at_several_temperatures_determine_how_the_error_changes(tmp_path: Path) -> None:
+    files = [recorded(tmp_path, degrees, place, 2e-6) for place, degrees in enumerate((10.0, 30.0, 50.0))]
+    found = sw.identify("csg-20-100", files)
+    assert not found.failed
+    (change,) = (each.estimate for each in found.parameters if "change" in each.estimate.path)
+    assert abs(change.value - 2e-6) < 3.5 * change.sigma
+    law: Any = found.accepted.gear.kinematic_error
+    assert law.reference_temperature == pytest.approx(303.15)
+    angle = np.linspace(0.0, 6.0, 100)
+    assert law.replace(temperature=323.15).error(angle) == pytest.approx(3.6e-4 * np.sin(2.0 * angle + 0.3), abs=4e-6)
+    path = tmp_path / "gear.toml"
+    found.accepted.save(path)
+    assert GearSet.read(path).gear.kinematic_error == law
+
+
+def test_files_at_one_temperature_determine_no_change(tmp_path: Path) -> None:
+    found = sw.identify("csg-20-100", [recorded(tmp_path, 20.0, place, 2e-6) for place in range(2)])
+    assert found.accepted.gear.kinematic_error.name == "fourier"
+    assert not any("change" in each.estimate.path for each in found.parameters)
+
+
+def test_an_error_that_does_not_change_stays_one_law_of_all_files(tmp_path: Path) -> None:
+    files = [recorded(tmp_path, degrees, place, 0.0) for place, degrees in enumerate((10.0, 30.0, 50.0))]
+    error: Any = sw.identify("csg-20-100", files).accepted.gear.kinematic_error
+    assert (error.name, error.amplitude) == ("fourier", pytest.approx([3e-4], abs=1e-6))

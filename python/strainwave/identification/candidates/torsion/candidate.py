@@ -8,6 +8,7 @@ exact derivatives then refine all numbers of spring and hysteresis together.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -28,7 +29,15 @@ from strainwave.identification.candidates.torsion.dissipation import (
     maxwell,
     pairs,
 )
-from strainwave.identification.candidates.torsion.springs import CUBIC, LINEAR, THREE_SEGMENT, Answer, SpringKind, solve
+from strainwave.identification.candidates.torsion.springs import (
+    CUBIC,
+    LINEAR,
+    THREE_SEGMENT,
+    Answer,
+    Asymmetric,
+    SpringKind,
+    solve,
+)
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import Fit, fit
 from strainwave.identification.fitting.unknowns import Estimate
@@ -42,6 +51,9 @@ MAX_MINIMA = 6  # of one kind that are fitted
 MIN_ZERO_DISTANCE = 0.02  # of half the span: guesses of the zero of the twist that are closer are one
 DRIFT_NAMES = ("torque_drift", "twist_drift")
 MIN_DRIFT_SIGMA = 3.0  # standard deviations of a drift
+MIN_ASYMMETRY_SIGMA = 3.0  # standard deviations of a factor from 1
+FACTOR_PATH = "stiffness.negative_factor"
+MAX_FACTOR_SIGMA = 0.05  # of the torque in one sense over that in the other: beyond, a loop does not determine it
 MAX_START_SAMPLES = 500  # for initial values of a law whose torques take long
 MIN_ERROR_SHARE = 1e-3  # of the span of the torque: a smaller decrease of the error does not justify another parameter
 
@@ -57,7 +69,8 @@ def fit_loop(
     That is Maxwell-slip hysteresis, in parallel with the spring. A single branch determines none: the hysteresis of the gear is
     kept. A loop from the input contains the friction of the wave generator, too. If this was measured, it is taken out. If not,
     the loop determines the sum of friction and hysteresis alone; one of them is fitted, friction rather than hysteresis, and
-    the other is kept. A drift of torque or twist is fitted if the loop shows one.
+    the other is kept. A drift of torque or twist is fitted if the loop shows one, and a spring that differs between the senses
+    of twist.
 
     Args:
         loop: measured torque over twist
@@ -67,7 +80,7 @@ def fit_loop(
 
     Returns:
         candidates, best first by the error on data held out; of those within 5 % of it, and a thousandth of the span of the
-        torque, the one with the fewest parameters
+        torque, the one with the fewest parameters; last those with an asymmetry that the loop does not show
 
     Raises:
         ValueError: too few samples for any candidate
@@ -80,9 +93,14 @@ def fit_loop(
         loop = replace(loop, **drift)
         candidates = _fitted(loop, gear, chosen, kinds)
         best = min(candidates, key=lambda c: c.error)
+    asymmetric = one_sided(best, loop, gear)
+    shown = [each for each in asymmetric if shows_asymmetry(each) and each.error < best.error]
+    candidates += shown
+    best = min(candidates, key=lambda c: c.error)
     good = float(np.hypot(1.05 * best.error, MIN_ERROR_SHARE * np.ptp(loop.torque)))
     candidates += simpler(best, good, gear)
-    return sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
+    ranked = sorted(candidates, key=lambda c: (c.error > good, len(c.fit.estimates) if c.error <= good else c.error))
+    return [*ranked, *(each for each in asymmetric if each not in shown)]
 
 
 def _fitted(
@@ -137,6 +155,11 @@ class TorsionCandidate(ComparedByFields):
     name: str
     fit: Fit
     error: float
+
+    @property
+    def is_one_sided(self) -> bool:
+        """True if its spring differs between the senses of twist."""
+        return isinstance(self.spring, Asymmetric)
 
     @property
     def loop(self) -> TorsionLoop:
@@ -249,6 +272,51 @@ def with_drift(found: TorsionCandidate, known: Gear) -> TorsionCandidate:
     tried = [finished(found.fit.gear, loop, found.fit.training, found.spring, found.dissipation, known) for loop in loops]
     shown = [each for each in tried if each.error < found.error and all(map(is_shown, each.fit.estimates))]
     return min([found, *shown], key=lambda each: each.error)
+
+
+def one_sided(best: TorsionCandidate, loop: TorsionLoop, known: Gear) -> list[TorsionCandidate]:
+    """Return candidates with a factor on the torque at negative twist and the dissipation of the best one, best first.
+
+    A single branch shows none, because it does not determine its zeros. Nor does a loop at the input: its kinematic error bends
+    the curve as an asymmetry does.
+    """
+    if loop.single_branch or loop.input_ratio is not None:
+        return []
+    spring, training = Asymmetric(best.spring), best.fit.training
+    even: Any = spring.wrapped(best.fit.gear.stiffness, 1.0)
+    found = [finished(best.fit.gear.replace(stiffness=even), resumed(best), training, spring, best.dissipation, known)]
+    for law in FITTED_SPRINGS:
+        with suppress(ValueError):  # too few samples, or nothing of this kind fits
+            found.append(candidate(loop, known, training, Asymmetric(law), best.dissipation))
+    return sorted(found, key=lambda each: each.error)
+
+
+def shows_asymmetry(found: TorsionCandidate) -> bool:
+    """True if the torque at negative twist differs from that at the opposite twist by more than chance."""
+    factor = _factor(found)
+    return bool(abs(factor.value - 1.0) > MIN_ASYMMETRY_SIGMA * factor.sigma)
+
+
+def _factor(found: TorsionCandidate) -> Estimate:
+    return next(each for each in found.fit.estimates if each.path == FACTOR_PATH)
+
+
+def asymmetry_in_words(fits: Sequence[TorsionCandidate]) -> Iterator[str]:
+    """Yield whether a loop determines that its spring differs between the senses of twist; `fits` are those of `fit_loop`."""
+    best, one_sided_fits = fits[0], [each for each in fits if each.is_one_sided]
+    if not one_sided_fits:
+        return
+    fit = best if best in one_sided_fits else min(one_sided_fits, key=lambda each: each.error)
+    factor = _factor(fit)
+    stated = f"the torque at negative twist is {factor.value:.3f} ± {factor.sigma:.2g} times that at the opposite twist"
+    if fit is best:
+        yield f"{stated}; a wrong zero of the torque can look the same"
+    elif shows_asymmetry(fit) and fit.error < best.error:
+        yield f"{stated}, but that is not taken: it makes up for less than a thousandth of the range of the torque"
+    elif factor.sigma < MAX_FACTOR_SIGMA and not shows_asymmetry(fit):
+        yield f"the spring is the same in both senses of twist: {stated}"
+    else:
+        yield "the loop does not determine whether the spring differs between the senses of twist"
 
 
 def drifts(found: TorsionCandidate) -> dict[str, Any]:

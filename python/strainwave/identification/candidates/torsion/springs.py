@@ -6,9 +6,10 @@ A library is a part of a gear whose torque is linear in positive weights: the be
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain, combinations, product
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +21,10 @@ from strainwave.equality import ComparedByFields
 Array = NDArray[np.float64]
 MAX_TURNS = 4  # of choosing spring and hysteresis in turn; no loop tried took more than three
 Law = stiffness.Linear | stiffness.Cubic | stiffness.Piecewise | stiffness.ThreeSegment | stiffness.MultiCompliance
-Spring = Law | stiffness.Backlash
+Spring = Law | stiffness.Asymmetric | stiffness.Backlash
 TRIED_KNEES = np.array([*np.arange(0.1, 1.0, 0.1), 0.95, 0.988])  # of half the span, tried
 TRIED_CLEARANCES = np.array([0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.65, 0.8, 1.2])  # of half the span: play of flanks
+TRIED_FACTORS = (0.5, 0.7, 0.85, 1.2, 1.4, 2.0)  # of the torque at negative twist
 WAVE_GENERATOR_SHARES = (0.2, 0.5, 0.8)  # of the compliance at zero torque, tried
 TRIED_HARDENINGS = (0.1, 1.0, 4.0)  # per the torque at half the span, of flexspline and wave generator, tried
 MIN_STIFFNESS_SHARE = 1e-6  # of the secant stiffness, in place of no spring
@@ -284,48 +286,83 @@ class MultiCompliance(SpringKind):
 
 
 @dataclass(frozen=True)
-class Backlash(SpringKind):
-    """Play before a spring of another kind."""
+class Wrapper(SpringKind):
+    """A spring of another kind with one number more, in which the torque is not linear."""
 
     law: SpringKind
+    number: ClassVar[str]
+
+    @abstractmethod
+    def wrapped(self, law: Spring, number: float) -> Spring:
+        """Return a spring with that number."""
+
+    @abstractmethod
+    def libraries(self, twist: Array, half: float, gear: Gear) -> Iterator[tuple[float, Library]]:
+        """Yield each number that is tried, and the torques of the spring with it."""
+
+    def library(self, twist: Array, half: float, gear: Gear) -> Library:
+        torques: list[Array] = []
+        choices: list[Choice] = []
+        first = 0
+        for number, law in self.libraries(twist, half, gear):
+            choices += [self._chosen(choice, number, first) for choice in law.choices]
+            torques.append(law.torques)
+            first += law.torques.shape[1]
+        return Library.of(torques, choices)
+
+    def _chosen(self, choice: Choice, number: float, first: int) -> Choice:
+        def put(gear: Gear, weights: Array) -> Gear:
+            return gear.replace(stiffness=self.wrapped(choice.put(gear, weights).stiffness, number))
+
+        return Choice(tuple(first + column for column in choice.columns), put, number)
+
+    def free(self, gear: Gear) -> list[str]:
+        spring: Any = gear.stiffness
+        of_law = self.law.free(gear.replace(stiffness=spring.law))
+        return [f"stiffness.{self.number}", *(path.replace("stiffness.", "stiffness.law.", 1) for path in of_law)]
+
+    def in_order(self, spring: Spring) -> Spring:
+        own: Any = spring
+        law = self.law.in_order(own.law)
+        return spring if law is own.law else self.wrapped(law, getattr(own, self.number))
+
+
+class Backlash(Wrapper):
+    """Play before a spring of another kind."""
+
+    number = "clearance"
     minima = 6
 
     @property
     def words(self) -> str:  # type: ignore[override]
         return f"{self.law.words} behind play"
 
-    def library(self, twist: Array, half: float, gear: Gear) -> Library:
-        torques: list[Array] = []
-        choices: list[Choice] = []
-        first = 0
+    def wrapped(self, law: Any, number: float) -> Spring:
+        return stiffness.Backlash(law=law, clearance=number)
+
+    def libraries(self, twist: Array, half: float, gear: Gear) -> Iterator[tuple[float, Library]]:
         for clearance in (half * TRIED_CLEARANCES).tolist():
             behind = twist - np.clip(twist, -0.5 * clearance, 0.5 * clearance)
-            law = self.law.library(behind, half - 0.5 * clearance, gear)
-            choices += [_behind_play(choice, clearance, first) for choice in law.choices]
-            torques.append(law.torques)
-            first += law.torques.shape[1]
-        return Library.of(torques, choices)
-
-    def free(self, gear: Gear) -> list[str]:
-        spring = gear.stiffness
-        assert isinstance(spring, stiffness.Backlash)
-        of_law = self.law.free(gear.replace(stiffness=spring.law))
-        return ["stiffness.clearance", *(path.replace("stiffness.", "stiffness.law.", 1) for path in of_law)]
-
-    def in_order(self, spring: Spring) -> Spring:
-        assert isinstance(spring, stiffness.Backlash)
-        law = self.law.in_order(spring.law)
-        assert not isinstance(law, stiffness.Backlash)
-        return spring if law is spring.law else spring.replace(law=law)
+            yield clearance, self.law.library(behind, half - 0.5 * clearance, gear)
 
 
-def _behind_play(choice: Choice, clearance: float, first: int) -> Choice:
-    def put(gear: Gear, weights: Array) -> Gear:
-        law = choice.put(gear, weights).stiffness
-        assert not isinstance(law, stiffness.Backlash)
-        return gear.replace(stiffness=stiffness.Backlash(law=law, clearance=clearance))
+class Asymmetric(Wrapper):
+    """A spring of another kind whose torque has a factor in the negative sense of twist."""
 
-    return Choice(tuple(first + column for column in choice.columns), put, clearance)
+    number = "negative_factor"
+    minima = 1
+
+    @property
+    def words(self) -> str:  # type: ignore[override]
+        return f"asymmetric {self.law.words}"
+
+    def wrapped(self, law: Any, number: float) -> Spring:
+        return stiffness.Asymmetric(law=law, negative_factor=number)
+
+    def libraries(self, twist: Array, half: float, gear: Gear) -> Iterator[tuple[float, Library]]:
+        law = self.law.library(twist, half, gear)
+        for factor in TRIED_FACTORS:
+            yield factor, replace(law, torques=law.torques * np.where(twist < 0.0, factor, 1.0)[:, np.newaxis])
 
 
 class Negligible(SpringKind):

@@ -1,0 +1,693 @@
+"""Loss of torsion loops by its source: bearing at the input, dry and viscous friction of the gear, mesh, and flexspline.
+
+On both ways of a loop the torque is S(twist) ± h: a curve that both ways share, and half of the width. Each source has its own
+form of h, with S the torque on that curve, T its largest, v the rate of the twist and i the ratio:
+
+    bearing, dry                  h = |i| b             at the input alone: with the input locked it does not turn
+    bearing, viscous              h = i² c_b |v|        at the input alone
+    gear, dry                     h = d                 at both sides, whatever the load is
+    gear, viscous                 h = c |v|             at both sides
+    mesh, in proportion to load   h = mu |S|            sliding between teeth, Coulomb
+    flexspline, material          h = eta T sqrt(1 - (S/T)²), or with 3 pi / 8 (1 - (S/T)²) in place of the root
+
+Both shapes of the material lose 2 pi eta times the stored energy in a cycle of a linear spring, at any rate: eta is a loss
+factor. The first is the ellipse of a complex stiffness, the second the lens of Rayleigh's law; any mixture is fitted. Friction
+changes with the temperature by exp(-kappa (temperature - that of the largest loop)); the material does not.
+
+For given kappa the torque is linear in all others, and so is the loss of a cycle. Loops at one load do not separate what is
+proportional to load from what is constant, loops at one rate not viscous from dry friction, and loops at one side not the
+bearing from the gear: the covariance of the fit contains that, and a share is stated only as well as it is separated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave import arguments
+from strainwave._core import Gear
+from strainwave.analysis.branches import turning_points
+from strainwave.equality import ComparedByFields
+from strainwave.files.recording import Recording
+from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.presentation import Presented, Row, Statement
+from strainwave.statistics.covariance import posterior_of
+from strainwave.statistics.determined_sum import sum_by_covariance
+from strainwave.statistics.linear_fit import linear_fit, solved
+from strainwave.typeset import percent, quantity, uncertain_quantity
+
+Array = NDArray[np.float64]
+
+MAX_SHARE_SIGMA = 0.05  # of the loss of a cycle: a share with a larger standard deviation is not separated
+SHAPE_SIGMA = 0.02  # of the loss of a cycle: how far real widths depart from the shapes (assumed)
+PRIOR_SHARE_SIGMA = 1.0  # of the loss of a cycle: no source loses more than all do
+FALL_SIGMA = 0.05  # 1/K: of the relative fall of friction with the temperature, about none (assumed)
+MIN_CORRELATION_OF_PARTNERS = 0.5  # of shares that are stated as a sum
+MAX_REACH_DIFFERENCE = 0.05  # of the span: reversals of one loop that differ by more are those of several
+MIN_SAMPLES_PER_WAY = 10
+REVERSAL_SHARES = (0.02, 0.06, 0.15)  # of the span, next to a reversal, that is left out; the second is taken
+MAX_PIECES_OF_CURVE = 24  # cubic pieces of the curve that both ways share
+SAMPLES_PER_PIECE = 12
+END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
+RATE_DEGREE = 5  # of the polynomial in time of one way: half a period of a sine to 1e-4
+MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from which on both senses have a width of their own
+ROUNDS_OF_CURVE = 2  # in which curve and widths are fitted in turn
+MIN_NOISE_SHARE = 1e-5  # of the torque: no sensor has less noise
+MIN_MISFIT_SIGMA = 4.0  # standard deviations of a loop's width that no source explains
+PLANNED_SAMPLES = 400
+MAX_PLANNED_LOOPS = 3
+PLANNED_REACHES, PLANNED_RATES, PLANNED_WARMTHS = (1.0, 0.5, 0.25), (1.0, 5.0), (0.0, 20.0)  # of the loop that is there; K
+
+
+# ---- Loops -----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class LossLoop(ComparedByFields):
+    """Both ways of a torsion loop of one amplitude, referred to the output.
+
+    Attributes:
+        twist: shape (n,) [rad]
+        torque: shape (n,) [N.m]
+        sense: 1 on the way up, -1 down, shape (n,)
+        rate: of the twist without its sign, shape (n,) [rad/s]; not a number without a clock
+        ratio: of the gear without its sign if the loop was measured at the input, 0 if at the output
+        temperature: mean [K]; not a number if it was not measured
+        ends: smallest and largest twist, at the reversals [rad]
+    """
+
+    twist: Array
+    torque: Array
+    sense: Array
+    rate: Array
+    ratio: float
+    temperature: float
+    ends: tuple[float, float]
+
+    @classmethod
+    def of(cls, recording: Recording, gear: Gear) -> LossLoop:
+        """Return the loop of a recording, without the first way of a gear that was not loaded before.
+
+        Raises:
+            ValueError: the columns are none of a loop, it has no two ways, or reversals of several amplitudes
+        """
+        loop = TorsionLoop.of(recording, gear)
+        turns = turning_points(loop.twist)
+        ends = [0, *turns, len(loop.twist) - 1]
+        span = float(np.ptp(loop.twist))
+        away = np.minimum(loop.twist - loop.twist.min(), loop.twist.max() - loop.twist) > MAX_REACH_DIFFERENCE * span
+        if any(away[turns]):
+            raise ValueError("it reverses at several amplitudes; give a recording for each amplitude")
+        first = 1 if away[0] else 0
+        ways = [slice(begin, end) for begin, end in zip(ends[first:-1], ends[first + 1 :], strict=True)]
+        if len(ways) < 2 or min(each.stop - each.start for each in ways[:2]) < MIN_SAMPLES_PER_WAY:
+            raise ValueError(f"the width of a loop needs ways up and down of at least {MIN_SAMPLES_PER_WAY} samples each")
+        sense, rate = np.zeros(len(loop.twist)), np.full(len(loop.twist), np.nan)
+        time = None
+        if "time" in recording and loop.moments is not None:
+            time = loop.moments * float(np.ptp(recording.time))
+        for way in ways:
+            sense[way] = np.sign(loop.twist[way.stop] - loop.twist[way.start])
+            if time is not None:
+                path = np.polynomial.Polynomial.fit(time[way], loop.twist[way], RATE_DEGREE)
+                rate[way] = np.abs(path.deriv()(time[way]))
+        low, high = float(loop.twist.min()), float(loop.twist.max())
+        kept = sense != 0.0
+        warmth = float(np.mean(recording.values("temperature", "K"))) if "temperature" in recording else np.nan
+        ratio = 0.0 if loop.input_ratio is None else abs(loop.input_ratio)
+        return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, warmth, (low, high))
+
+    def apart(self, share: float) -> LossLoop:
+        """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike."""
+        low, high = self.ends
+        kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
+        series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
+        return LossLoop(*series, self.ratio, self.temperature, self.ends)
+
+    @classmethod
+    def planned(cls, ratio: float, stiffness: float, reach: float, rate: float, temperature: float) -> LossLoop:
+        """Return a loop of a linear spring that could be measured, without a width."""
+        up = np.linspace(-reach, reach, PLANNED_SAMPLES // 2)[1:-1]
+        torque = np.concatenate((up, up[::-1]))
+        sense = np.repeat([1.0, -1.0], len(up))
+        ends = -reach / stiffness, reach / stiffness
+        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, temperature, ends)
+
+    @property
+    def is_timed(self) -> bool:
+        """True if the rate of the twist is known."""
+        return bool(np.isfinite(self.rate).all())
+
+    @property
+    def is_warm(self) -> bool:
+        """True if the temperature is known."""
+        return bool(np.isfinite(self.temperature))
+
+    @property
+    def speed(self) -> float:
+        """Median rate of the twist [rad/s]; 0 without a clock."""
+        return float(np.median(self.rate)) if self.is_timed else 0.0
+
+    @property
+    def words(self) -> str:
+        """Side, largest torque, and what else is known of it."""
+        side = "input with the output locked" if self.ratio else "output with the input locked"
+        at_rate = f", {quantity(self.speed, 'rad/s')} of twist" if self.is_timed else ""
+        warm = f", {self.temperature - 273.15:.0f} °C" if self.is_warm else ""
+        return f"±{quantity(0.5 * float(np.ptp(self.torque)), 'N.m')} at the {side}{at_rate}{warm}"
+
+
+# ---- Sources ---------------------------------------------------------------------------------------------------------
+
+
+class _Curve(NamedTuple):
+    """The torque on the curve that both ways of a loop share, and its ends [N.m]."""
+
+    torque: Array
+    low: float
+    high: float
+
+    @property
+    def bow(self) -> Array:
+        """1 - (S/T)² about the middle, shape (n,)."""
+        half = 0.5 * (self.high - self.low)
+        return np.clip((self.high - self.torque) * (self.torque - self.low), 0.0, None) / half**2
+
+    @property
+    def reach(self) -> float:
+        return 0.5 * (self.high - self.low)
+
+
+Shape = Callable[[LossLoop, _Curve], Array]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A source of loss.
+
+    Attributes:
+        name: of it
+        quantity: its number, in words
+        unit: of that
+        shapes: half of the width of a loop for the number 1 [N.m], one or several that are added
+        lubricant: the fall with the temperature that it shares with others; empty if it has none
+    """
+
+    name: str
+    quantity: str
+    unit: str
+    shapes: tuple[Shape, ...]
+    lubricant: str = ""
+
+
+def _dry(loop: LossLoop, curve: _Curve) -> Array:
+    return np.ones(len(loop.twist))
+
+
+SOURCES = (
+    Source("bearing, dry", "torque at the input", "N.m", (lambda loop, _: np.full(len(loop.twist), loop.ratio),), "bearing"),
+    Source("bearing, viscous", "at the input", "N.m.s/rad", (lambda loop, _: loop.ratio**2 * loop.rate,), "oil"),
+    Source("gear, dry", "torque at the output", "N.m", (_dry,), "mesh"),
+    Source("gear, viscous", "at the output", "N.m.s/rad", (lambda loop, _: loop.rate,), "oil"),
+    Source("mesh, in proportion to the load", "share of the load", "1", (lambda _, curve: np.abs(curve.torque),), "mesh"),
+    Source(
+        "flexspline, material", "loss factor", "1",
+        (lambda _, curve: curve.reach * np.sqrt(curve.bow), lambda _, curve: 3.0 * np.pi / 8.0 * curve.reach * curve.bow),
+    ),
+)  # fmt: skip
+
+
+# ---- Result ----------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class LossShare(Statement):
+    """Share of one source in the loss of a cycle.
+
+    Attributes:
+        name: of the source
+        share: of the loss of a cycle [1]
+        sigma: its standard deviation [1]
+        value, value_sigma: its number, as `quantity` and `unit` describe it, and its standard deviation
+        quantity: that number, in words
+        unit: of it
+        why: why the loops do not separate it, and what would; empty if they do
+    """
+
+    name: str
+    share: float
+    sigma: float
+    value: float
+    value_sigma: float
+    quantity: str
+    unit: str
+    why: str = ""
+
+    @property
+    def is_separated(self) -> bool:
+        """True if the loops determine it by itself."""
+        return not self.why
+
+    def _headline(self) -> str:
+        if self.why:
+            return f"{self.name}: not separable: {self.why}"
+        return f"{self.name}: {100.0 * self.share:.1f} ± {100.0 * self.sigma:.1f} %, {self.number}"
+
+    @property
+    def number(self) -> str:
+        """Its number with unit and standard deviation."""
+        return f"{self.quantity} {uncertain_quantity(self.value, self.value_sigma, self.unit)}"
+
+
+@dataclass(frozen=True)
+class LossShares(Presented):
+    """Result of `loss_shares`.
+
+    Attributes:
+        shares: of each source that the loops may contain
+        loss: of a cycle of the largest loop [J]
+        loop: that loop, in words
+        remarks: what the loops do not contain, and what no source explains
+    """
+
+    shares: tuple[LossShare, ...]
+    loss: float
+    loop: str
+    remarks: tuple[str, ...] = ()
+
+    def __getitem__(self, name: str) -> LossShare:
+        """Return the share of a source.
+
+        Raises:
+            KeyError: the loops contain no such source; names those that they may contain
+        """
+        for each in self.shares:
+            if each.name == name:
+                return each
+        raise KeyError(f"{name!r} is no source of these loops; they are {[each.name for each in self.shares]}")
+
+    @property
+    def in_words(self) -> str:
+        """The shares that are separated, in one line."""
+        shares = [f"{each.name} {100.0 * each.share:.0f} ± {100.0 * each.sigma:.0f} %" for each in self.shares if not each.why]
+        return "; ".join(shares) or "no source is separated"
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The result as sentences: the loss, each source, and the remarks."""
+        return (
+            f"{quantity(self.loss, 'J')} are lost in a cycle of the loop of {self.loop}",
+            *map(str, self.shares),
+            *self.remarks,
+        )
+
+    def _headline(self) -> str:
+        count = sum(each.is_separated for each in self.shares)
+        return f"{count} of {len(self.shares)} sources separated, {quantity(self.loss, 'J')} a cycle of the loop of {self.loop}"
+
+    def _rows(self) -> Iterator[Row]:
+        yield Row("loss of a cycle", self.loss, "J", note=f"of the loop of {self.loop}")
+        for each in self.shares:
+            yield Row(each.name, each.share, "1", each.sigma, f"not separable: {each.why}" if each.why else each.number)
+
+
+def loss_shares(loops: Sequence[Recording], gear: Gear) -> LossShares:
+    """Return the share of each source in the loss of torsion loops, or why the loops do not separate it.
+
+    Give loops of one gear at both sides, several loads, rates and temperatures, one amplitude a recording.
+
+    Args:
+        loops: `twist` and `torque` at the output with the input locked, or `input_angle` and `input_torque` with the output
+            locked; with `time` if friction may be viscous, and `temperature`
+        gear: whose ratio refers loops at the input to the output
+
+    Raises:
+        ValueError: a recording is no loop, or some have a time or a temperature and others have none
+
+    >>> import strainwave as sw
+    >>> loops, units = [], {"twist": "rad", "torque": "N.m"}
+    >>> way = np.sin(np.linspace(0.5, 4.5, 801) * np.pi)
+    >>> for reach in (10.0, 40.0):  # of a mesh that loses 2 % of the load, and 0.5 N.m of dry friction
+    ...     torque = reach * way + (0.5 + 0.02 * np.abs(reach * way)) * np.sign(np.gradient(way))
+    ...     loops.append(sw.Recording({"twist": reach * way / 4e4, "torque": torque}, units))
+    >>> result = loss_shares(loops, sw.load("hfuc-25-100"))
+    >>> [round(result[name].value, 3) for name in ("gear, dry", "mesh, in proportion to the load")]
+    [0.5, 0.02]
+    """
+    measured = [LossLoop.of(each, arguments.gear(gear)) for each in loops]
+    if not measured:
+        raise ValueError("loss_shares needs at least one torsion loop")
+    known = {"time": [each.is_timed for each in measured], "temperature": [each.is_warm for each in measured]}
+    for what, has in known.items():
+        if any(has) and not all(has):
+            raise ValueError(
+                f"loop {has.index(False) + 1} of {len(has)} has no {what}, others have one: give it to all or none"
+            )
+    nearest, *others = REVERSAL_SHARES
+    near = _fitted([loop.apart(nearest) for loop in measured])
+    at_ends = [(curve.low, curve.high) for curve in near.curves]
+    fit, *further = (_fitted([loop.apart(share) for loop in measured], at_ends) for share in others)
+    return _shares(fit, np.array([each.shares - fit.shares for each in (near, *further)]))
+
+
+# ---- Fit -------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class _Widths:
+    """Half widths of all shapes of sources on loops at temperatures."""
+
+    sources: list[Source]
+    lubricants: list[str]
+    reference_temperature: float
+
+    def of_loop(self, loop: LossLoop, curve: _Curve) -> Array:
+        """Return them for the number 1 at the reference temperature, shape (n, shapes)."""
+        shapes = [shape(loop, curve) for source in self.sources for shape in source.shapes]
+        return loop.sense[:, np.newaxis] * np.stack(shapes, axis=1)
+
+    def factors(self, temperature: float, falls: Array) -> tuple[Array, Array]:
+        """Return the factor of each shape at a temperature, and its derivative by each fall, shape (shapes, falls)."""
+        warmer = temperature - self.reference_temperature if self.lubricants else 0.0
+        own = [source.lubricant for source in self.sources for _ in source.shapes]
+        of_fall = np.array([[name == each for each in self.lubricants] for name in own], float).reshape(len(own), -1)
+        factor = np.exp(-warmer * (of_fall @ falls))
+        return factor, -warmer * of_fall * factor[:, np.newaxis]
+
+    def jacobian(self, widths: Array, temperature: float, amplitudes: Array, falls: Array) -> Array:
+        """Return the derivatives of the torque by amplitudes and falls, shape (n, shapes + falls)."""
+        factor, slopes = self.factors(temperature, falls)
+        return np.concatenate((widths * factor, widths @ (amplitudes[:, np.newaxis] * slopes)), axis=1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """The fit of all sources to all loops.
+
+    Attributes:
+        loops, curves: shape of each
+        widths: of the sources that the loops may contain
+        amplitudes: of each shape of each source
+        falls: of each lubricant with the temperature [1/K]
+        covariance: of both
+        unit_loss: of each shape for the number 1, in a cycle of the largest loop [J]
+        largest: place of that loop
+        noise: of the torque of a loop, the median [N.m]
+        misfit: the largest part of a loop's width that no source explains [1]
+    """
+
+    loops: Sequence[LossLoop]
+    curves: Sequence[_Curve]
+    widths: _Widths
+    amplitudes: Array
+    falls: Array
+    covariance: Array
+    unit_loss: Array
+    largest: int
+    noise: float
+    misfit: float
+
+    @property
+    def shares(self) -> Array:
+        """Shares of the sources in the loss of a cycle, shape (sources,)."""
+        losses = _added(self.widths.sources) @ (self.unit_loss * self.amplitudes)
+        return np.asarray(losses / losses.sum())
+
+
+@dataclass(frozen=True, eq=False)
+class _Equations:
+    """A loop as linear equations in units of its noise, less what the curve and both senses of torque explain.
+
+    Attributes:
+        loop: with the temperature
+        widths: of all shapes for the number 1, shape (n, shapes)
+        torque: shape (n,)
+        noise: of the torque [N.m]
+    """
+
+    loop: LossLoop
+    widths: Array
+    torque: Array
+    noise: float
+
+    @classmethod
+    def of(cls, loop: LossLoop, curve: _Curve, model: _Widths) -> _Equations:
+        shared = _shared(loop, curve)
+        both = np.column_stack((model.of_loop(loop, curve), loop.torque))
+        left = both - shared @ (shared.T @ both)
+        widths, torque = left[:, :-1], left[:, -1]
+        unexplained = torque - widths @ solved(widths, torque)
+        free = max(len(torque) - shared.shape[1] - widths.shape[1], 1)
+        noise = max(float(np.sqrt(unexplained @ unexplained / free)), MIN_NOISE_SHARE * curve.reach)
+        return cls(loop, widths / noise, torque / noise, noise)
+
+    @property
+    def triangle(self) -> _Equations:
+        """The same sum of squares by as many equations as there are unknowns."""
+        rows = np.asarray(np.linalg.qr(np.column_stack((self.widths, self.torque)), mode="r"))
+        return replace(self, widths=rows[:, :-1], torque=rows[:, -1])
+
+
+def _fitted(loops: Sequence[LossLoop], at_ends: Sequence[tuple[float, float]] | None = None) -> _Fit:
+    """Fit all sources to all loops, with a curve of each loop that both ways share, between known torques at its ends [N.m]."""
+    known = [None] * len(loops) if at_ends is None else at_ends
+    curves = [_curve(loop, None, ends) for loop, ends in zip(loops, known, strict=True)]
+    largest = _largest(loops, curves)
+    model = _model_of(loops, largest)
+    for _ in range(ROUNDS_OF_CURVE):
+        curves = [
+            _curve(loop, model.of_loop(loop, curve), ends) for loop, curve, ends in zip(loops, curves, known, strict=True)
+        ]
+    equations = [_Equations.of(loop, curve, model) for loop, curve in zip(loops, curves, strict=True)]
+    unit_loss = _cycle(loops[largest], curves[largest], model)
+    before = _priors(unit_loss, equations[largest], len(model.lubricants))
+    amplitudes, falls = _solved(model, equations, before)
+    rows = [model.jacobian(each.widths, each.loop.temperature, amplitudes, falls) for each in equations]
+    explained = [row[:, : len(amplitudes)] @ amplitudes for row in rows]
+    left = [each.torque - whole for each, whole in zip(equations, explained, strict=True)]
+    covariance, _ = posterior_of(np.concatenate(rows), [each[np.newaxis] for each in left], before)
+    misfit = max(_misfit(*each) for each in zip(left, explained, strict=True))
+    noise = float(np.median([each.noise for each in equations]))
+    return _Fit(loops, curves, model, amplitudes, falls, covariance, unit_loss, largest, noise, misfit)
+
+
+def _priors(unit_loss: Array, largest: _Equations, falls: int) -> Array:
+    """Return priors about zero as rows: no source loses more than a cycle does, and friction falls a little with temperature.
+
+    The loss of a cycle is determined by the largest loop alone even if its sources are not.
+    """
+    loss = max(float(np.abs(unit_loss @ solved(largest.widths, largest.torque))), 1e-300)
+    return np.diag(np.append(unit_loss / (PRIOR_SHARE_SIGMA * loss), np.full(falls, 1.0 / FALL_SIGMA)))
+
+
+def _largest(loops: Sequence[LossLoop], curves: Sequence[_Curve]) -> int:
+    """Return the place of the loop of the largest torque, at the input if there is one; of several the first of the slowest."""
+    has_input = any(loop.ratio for loop in loops)
+    places = [place for place, loop in enumerate(loops) if bool(loop.ratio) == has_input]
+    most = max(curves[place].reach for place in places)
+    near = [place for place in places if curves[place].reach > (1.0 - MAX_REACH_DIFFERENCE) * most]
+    slowest = (1.0 + MAX_REACH_DIFFERENCE) * min(loops[place].speed for place in near)
+    return next(place for place in near if loops[place].speed <= slowest)
+
+
+def _model_of(loops: Sequence[LossLoop], largest: int) -> _Widths:
+    """Return the sources that loops may contain, at the temperature of the largest, and the lubricants whose fall they show."""
+    has_input, timed = any(loop.ratio for loop in loops), all(loop.is_timed for loop in loops)
+    sources = [
+        each
+        for each in SOURCES
+        if (has_input or not each.name.startswith("bearing")) and (timed or not each.name.endswith("viscous"))
+    ]
+    temperatures = np.array([loop.temperature for loop in loops])
+    warmed = bool(np.isfinite(temperatures).all()) and float(np.ptp(temperatures)) >= MIN_TEMPERATURE_SPAN
+    lubricants = [*dict.fromkeys(each.lubricant for each in sources if each.lubricant)] if warmed else []
+    return _Widths(sources, lubricants, temperatures[largest].item())
+
+
+def _splines(loop: LossLoop) -> Array:
+    """Return cubic splines over the twist, shape (n, pieces + 3)."""
+    from scipy.interpolate import BSpline
+
+    pieces = int(np.clip(len(loop.twist) // (2 * SAMPLES_PER_PIECE), 1, MAX_PIECES_OF_CURVE))
+    low, high = float(loop.twist.min()), float(loop.twist.max())
+    knots = np.concatenate(([low] * 3, np.linspace(low, high, pieces + 1), [high] * 3))
+    return np.asarray(BSpline.design_matrix(loop.twist, knots, 3).toarray())
+
+
+def _curve(loop: LossLoop, widths: Array | None, at_ends: tuple[float, float] | None) -> _Curve:
+    """Return the torque on the curve that both ways share, beside the widths of sources; of a linear spring if None."""
+    splines = _splines(loop)
+    if widths is None:  # as of a linear spring
+        low, high = loop.ends
+        way = 2.0 * (loop.twist - low) / (high - low) - 1.0
+        bow = np.clip(1.0 - way**2, 0.0, None)
+        widths = loop.sense[:, np.newaxis] * np.stack([np.ones_like(way), np.abs(way), np.sqrt(bow), bow], axis=1)
+    coefficients = solved(np.column_stack((splines, widths)), loop.torque)
+    torque = splines @ coefficients[: splines.shape[1]]
+    low, high = at_ends or (_at_end(loop.twist, torque, end) for end in loop.ends)
+    return _Curve(torque, low, high)
+
+
+def _at_end(twist: Array, torque: Array, end: float) -> float:
+    """Return the torque at a reversal [N.m], by a line through the curve next to it."""
+    near = np.abs(twist - end) <= END_SHARE * float(np.ptp(twist))
+    return float(np.polyval(np.polyfit(twist[near] - end, torque[near], 1), 0.0))
+
+
+def _shared(loop: LossLoop, curve: _Curve) -> Array:
+    """Return orthonormal columns of what says nothing of a loss: the curve, and a width that differs between both senses.
+
+    The latter is also what an error of the zero of the torque changes of the width in proportion to load.
+    """
+    columns = [_splines(loop)]
+    if min(-curve.low, curve.high) > MIN_BOTH_SENSES * (curve.high - curve.low):
+        columns.append((loop.sense * np.sign(curve.torque))[:, np.newaxis])
+    return np.asarray(np.linalg.qr(np.concatenate(columns, axis=1))[0])
+
+
+def _cycle(loop: LossLoop, curve: _Curve, model: _Widths) -> Array:
+    """Return the loss of a cycle for the number 1 of each shape, from reversal to reversal and back [J]."""
+    loss = np.zeros(sum(len(each.shapes) for each in model.sources))
+    for sense in (1.0, -1.0):
+        way = np.flatnonzero(loop.sense == sense)
+        way = way[np.argsort(loop.twist[way])]
+        twist = np.concatenate((loop.ends[:1], loop.twist[way], loop.ends[1:]))
+        torque = np.concatenate(([curve.low], curve.torque[way], [curve.high]))
+        rate = np.concatenate((loop.rate[way[:1]], loop.rate[way], loop.rate[way[-1:]]))
+        whole = replace(loop, twist=twist, torque=torque, sense=np.ones(len(twist)), rate=rate)
+        loss += np.trapezoid(model.of_loop(whole, curve._replace(torque=torque)), twist, axis=0)
+    return loss
+
+
+def _solved(model: _Widths, equations: Sequence[_Equations], before: Array) -> tuple[Array, Array]:
+    """Return amplitudes and falls by least squares with priors about zero."""
+    from scipy.optimize import least_squares
+
+    small, shapes = [each.triangle for each in equations], equations[0].widths.shape[1]
+
+    def residual(unknowns: Array) -> Array:
+        amplitudes, falls = unknowns[:shapes], unknowns[shapes:]
+        left = [each.widths @ (model.factors(each.loop.temperature, falls)[0] * amplitudes) - each.torque for each in small]
+        return np.concatenate((*left, before @ unknowns))
+
+    def slopes(unknowns: Array) -> Array:
+        amplitudes, falls = unknowns[:shapes], unknowns[shapes:]
+        rows = [model.jacobian(each.widths, each.loop.temperature, amplitudes, falls) for each in small]
+        return np.concatenate((*rows, before))
+
+    nothing = np.zeros(len(before))
+    begin = np.append(solved(slopes(nothing)[:, :shapes], -residual(nothing)), nothing[shapes:])
+    unknowns = least_squares(residual, begin, slopes, method="lm", x_scale="jac").x
+    return unknowns[:shapes], unknowns[shapes:]
+
+
+def _misfit(left: Array, explained: Array) -> float:
+    """Return the part of a loop's width that no source explains, if it is beyond chance [1]."""
+    fit = linear_fit(explained[:, np.newaxis], left)
+    is_beyond = abs(fit.values[0]) > MIN_MISFIT_SIGMA * fit.sigma[0]
+    return float(abs(fit.values[0])) if is_beyond else 0.0
+
+
+# ---- Shares ----------------------------------------------------------------------------------------------------------
+
+
+def _shares(fit: _Fit, shifts: Array) -> LossShares:
+    """Return the shares of sources, their shapes added.
+
+    Args:
+        fit: of all loops
+        shifts: of the shares if more or less next to reversals is left out, shape (fits, sources)
+    """
+    added = _added(fit.widths.sources)
+    losses = added @ (fit.unit_loss * fit.amplitudes)
+    total = float(losses.sum())
+    by_shape = fit.covariance[: len(fit.amplitudes), : len(fit.amplitudes)]
+    of_losses = added @ (by_shape * np.outer(fit.unit_loss, fit.unit_loss)) @ added.T
+    chance, names = np.sqrt(np.diag(of_losses)) / abs(total), [each.name for each in fit.widths.sources]
+    of_forms = np.hypot(np.hypot(SHAPE_SIGMA, fit.misfit), np.abs(shifts).max(axis=0))
+    of_one = added @ fit.unit_loss / added.sum(axis=1)  # loss for the number 1 [J]
+    values = added @ fit.amplitudes
+    value_sigmas = np.hypot(np.sqrt(np.diag(added @ by_shape @ added.T)), of_forms * abs(total) / of_one)
+
+    def share(place: int) -> LossShare:
+        source, of_cycle = fit.widths.sources[place], float(losses[place] / total)
+        sigma, number = float(np.hypot(chance[place], of_forms[place])), (float(values[place]), float(value_sigmas[place]))
+        own = LossShare(source.name, of_cycle, sigma, *number, source.quantity, source.unit)
+        return own if sigma <= MAX_SHARE_SIGMA else replace(own, why=_why(place))
+
+    def _why(place: int) -> str:
+        if chance[place] <= MAX_SHARE_SIGMA:
+            by = percent(float(of_forms[place]))
+            return f"the loops depart from the forms of all sources, by {by} of the loss: friction may slip little by little"
+        related = np.abs(of_losses[place]) / np.sqrt(of_losses[place, place] * np.diag(of_losses))
+        partners = [other for other in range(len(names)) if other != place and related[other] > MIN_CORRELATION_OF_PARTNERS]
+        together = sum_by_covariance(of_losses, [place, *partners], losses, names, "J")
+        of_sum = np.abs(shifts[:, [place, *partners]] @ together.factors).max() if partners else of_forms[place]
+        floor = float(np.hypot(np.hypot(SHAPE_SIGMA, fit.misfit), of_sum))
+        together = replace(together, sigma=float(np.hypot(together.sigma, floor * abs(total))))
+        known = f"{together}, " if partners and together.sigma < MAX_SHARE_SIGMA * abs(total) else ""
+        return f"{known}{_next_loops(fit, place, total)}"
+
+    shares = tuple(share(place) for place in range(len(names)))
+    return LossShares(shares, total, fit.loops[fit.largest].words, tuple(_remarks(fit)))
+
+
+def _added(sources: Sequence[Source]) -> Array:
+    """Return the matrix that adds the shapes of each source, shape (sources, shapes)."""
+    rows = np.eye(len(sources))
+    return np.repeat(rows, [len(each.shapes) for each in sources], axis=1)
+
+
+def _next_loops(fit: _Fit, place: int, total: float) -> str:
+    """Return in words the loops that would separate a source, the best one first."""
+    weights = np.append((_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total), np.zeros(len(fit.falls)))
+    covariance, chosen, options = fit.covariance, list[LossLoop](), [*_planned(fit)]
+
+    def sigma(after: Array) -> float:
+        return float(np.hypot(np.sqrt(max(weights @ after @ weights, 0.0)), SHAPE_SIGMA))
+
+    while len(chosen) < MAX_PLANNED_LOOPS and sigma(covariance) > MAX_SHARE_SIGMA:
+        loop, rows = min(options, key=lambda option: sigma(_with_rows(covariance, option[1])))
+        covariance, chosen = _with_rows(covariance, rows), [*chosen, loop]
+    loops = f"{'a loop' if len(chosen) == 1 else 'loops'} of {' and '.join(loop.words for loop in chosen)}"
+    return f"{loops} would determine it to ± {percent(sigma(covariance))}"
+
+
+def _with_rows(covariance: Array, rows: Array) -> Array:
+    """Return the covariance after further equations of unit uncertainty, without the inverse of an ill-conditioned one."""
+    shared = rows @ covariance
+    return np.asarray(covariance - shared.T @ np.linalg.solve(np.eye(len(rows)) + shared @ rows.T, shared))
+
+
+def _planned(fit: _Fit) -> Iterator[tuple[LossLoop, Array]]:
+    """Yield loops that could be measured, and their equations of amplitudes and falls, as rows of unit uncertainty."""
+    largest, curve, model = fit.loops[fit.largest], fit.curves[fit.largest], fit.widths
+    stiffness = 2.0 * curve.reach / (largest.ends[1] - largest.ends[0])
+    rate = largest.speed if largest.is_timed else np.nan
+    rates, warmths = PLANNED_RATES if largest.is_timed else (1.0,), PLANNED_WARMTHS if model.lubricants else (0.0,)
+    ratios = {0.0, *(each.ratio for each in fit.loops)}
+    for ratio, warmer, faster, part in product(sorted(ratios), warmths, rates, PLANNED_REACHES):
+        temperature, reach = largest.temperature + warmer, part * curve.reach
+        loop = LossLoop.planned(ratio, stiffness, reach, faster * rate, temperature)
+        widths = model.of_loop(loop, _Curve(loop.torque, -reach, reach)) / fit.noise
+        rows = model.jacobian(widths, temperature, fit.amplitudes, fit.falls)
+        yield loop, np.asarray(np.linalg.qr(rows, mode="r"))
+
+
+def _remarks(fit: _Fit) -> Iterator[str]:
+    if not any(each.ratio for each in fit.loops):
+        yield "no loop was measured at the input: the bearing of the wave generator stands still in all of them"
+    elif all(each.ratio for each in fit.loops):
+        yield "no loop was measured at the output with the input locked, which alone separates the bearing from the gear"
+    if not all(each.is_timed for each in fit.loops):
+        yield "the loops have no time, so they are taken for so slow that no friction depends on the rate"
+    if len(fit.falls) == 0:
+        yield "the shares are those at the temperature of the loops, which does not vary or was not measured"
+    if fit.misfit > 0.0:
+        yield f"the sources leave up to {percent(fit.misfit)} of the width of a loop unexplained, which is part of ±"
