@@ -248,7 +248,9 @@ def _with_loop(differing: list[Difference], first: GearSet, second: GearSet) -> 
     names = [f"loop to {torque:.4g} N.m: {place}" for place in places]
     units = [*["rad"] * len(SHARES_OF_TORQUE), "J"]
     loop = _of_curves(names, units, curves, sigmas, _determined(LAWS, first, second))
-    reached = [Difference(f"loop to {torque:.4g} N.m: was measured to", *measured, "N.m")] if is_far_below else []
+    reached = (
+        [Difference(f"loop to {torque:.4g} N.m: was measured to", measured[0], measured[1], "N.m")] if is_far_below else []
+    )
     return [*(each for each in differing if not each.path.startswith("gear.hysteresis.")), *reached, *loop]
 
 
