@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, arguments
 from strainwave._core import Gear
 from strainwave.analysis.friction_curve import FRICTION_LAW, compared_speeds, friction_curve, friction_sigma
-from strainwave.analysis.torsion_loop import LAWS, SHARES_OF_TORQUE, loop_sigma, measured_torque, torsion_loop
+from strainwave.analysis.torsion_loop import LAWS, SHARES_OF_TORQUE, loop_sigma, measured_torque, rated_torque, torsion_loop
 from strainwave.files.described import parameters, parts
 from strainwave.files.gear_file import at
 from strainwave.files.gear_set import GearSet
@@ -24,6 +24,7 @@ from strainwave.presentation import Statement
 
 Array = NDArray[np.float64]
 Model: TypeAlias = Gear | Drive | GearSet
+MIN_SHARE_OF_TORQUE = 0.5  # of the torque that a gear was measured to: a smaller loop has no standard deviation
 
 
 @dataclass(frozen=True)
@@ -233,19 +234,24 @@ def _of_curves(
 def _with_loop(differing: list[Difference], first: GearSet, second: GearSet) -> list[Difference]:
     """Return differences with those of the torsion loop in place of those of single elements of hysteresis, if any differ.
 
-    The loop goes to the smaller of the torques that both gears were measured or are rated to.
+    The loop goes to the smaller of the torques that both gears were measured or are rated to. A gear says little of less than
+    half the torque that it was measured to: there no standard deviation is stated, but these torques.
     """
-    torques = [torque for each in (first, second) if (torque := measured_torque(each))]
-    if len(torques) < 2 or not any(each.path.startswith(("gear.hysteresis", "gear.stiffness")) for each in differing):
+    measured = [measured_torque(each) for each in (first, second)]
+    torque = min(own or rated_torque(each) or 0.0 for own, each in zip(measured, (first, second), strict=True))
+    if not torque or not any(each.path.startswith(("gear.hysteresis", "gear.stiffness")) for each in differing):
         return differing
-    torque = min(torques)
+    is_far_below = any(torque < MIN_SHARE_OF_TORQUE * (own or 0.0) for own in measured)
     curves = [torsion_loop(each.gear, torque) for each in (first, second)]
-    sigmas = [loop_sigma(each, torque) for each in (first, second)]
+    sigmas = [None if is_far_below else loop_sigma(each, torque) for each in (first, second)]
     places = [*(f"twist falling through {share * torque:.4g} N.m" for share in SHARES_OF_TORQUE), "loss"]
     names = [f"loop to {torque:.4g} N.m: {place}" for place in places]
     units = [*["rad"] * len(SHARES_OF_TORQUE), "J"]
     loop = _of_curves(names, units, curves, sigmas, _determined(LAWS, first, second))
-    return [*(each for each in differing if not each.path.startswith("gear.hysteresis.")), *loop]
+    reached = (
+        [Difference(f"loop to {torque:.4g} N.m: was measured to", measured[0], measured[1], "N.m")] if is_far_below else []
+    )
+    return [*(each for each in differing if not each.path.startswith("gear.hysteresis.")), *reached, *loop]
 
 
 def _parts(model: Model) -> dict[str, Any]:

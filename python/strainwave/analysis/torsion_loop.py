@@ -28,11 +28,20 @@ LAWS = ("gear.stiffness.", "gear.hysteresis.")
 
 
 def measured_torque(gear_set: GearSet) -> float | None:
-    """Return the largest torque at the output that its files contain, or that its ratings allow [N.m]; None without both."""
-    ends = [np.abs(each.measured["output_torque"]).max() for each in gear_set.validation if "output_torque" in each.measured]
+    """Return the largest torque at the output under which files of a gear determine its loop [N.m]; None without."""
+    sources = [entry.source for path, entry in gear_set.sources.items() if path.startswith(LAWS)]
+    ends = [
+        np.abs(each.measured["output_torque"]).max()
+        for each in gear_set.validation
+        if "output_torque" in each.measured and (each.kind == "torsion" or any(each.file in source for source in sources))
+    ]
+    return float(max(ends)) if ends else None
+
+
+def rated_torque(gear_set: GearSet) -> float | None:
+    """Return the largest torque at the output that the ratings of a gear allow [N.m]; None without them."""
     ratings = (gear_set.ratings[name] for name in RATINGS_OF_TORQUE if name in gear_set.ratings)
-    rated = next((convert(float(each.value), each.unit, "N.m") for each in ratings), None)
-    return float(max(ends)) if ends else rated
+    return next((convert(float(each.value), each.unit, "N.m") for each in ratings), None)
 
 
 def torsion_loop(gear: Any, torque: float) -> Array:
@@ -43,7 +52,7 @@ def torsion_loop(gear: Any, torque: float) -> Array:
         torque: largest torque of a loop about zero [N.m]
 
     Returns:
-        twists [rad] and loss [J], shape (5,)
+        twists [rad] and loss [J], shape (5,); 0 where they are less than what rounding leaves
 
     >>> import strainwave as sw
     >>> slip = sw.hysteresis.MaxwellSlip(stiffness=[1e3], breakaway=[1.0])
@@ -64,7 +73,10 @@ def torsion_loop(gear: Any, torque: float) -> Array:
     twist, force = loop(reach)
     falling = slice(None, POINTS_PER_BRANCH + 1)
     points = np.interp(torque * np.array(SHARES_OF_TORQUE), force[falling][::-1], twist[falling][::-1])
-    return np.append(points, abs(float(np.trapezoid(force, twist))))
+    loss = abs(float(np.trapezoid(force, twist)))
+    return np.append(
+        np.where(np.abs(points) > NO_CHANGE * reach, points, 0.0), loss if loss > NO_CHANGE * torque * reach else 0.0
+    )
 
 
 def loop_sigma(gear_set: GearSet, torque: float) -> Array | None:

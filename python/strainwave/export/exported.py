@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, ParamSpec, get_args
 
 from strainwave.files.entries import OPPOSITE_SENSE
+from strainwave.files.gear_file import ACCEPTED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
@@ -106,8 +107,12 @@ def _with_origins(found: Exported, gear_set: GearSet) -> Exported:
 
 
 def valid_ranges(gear_set: GearSet) -> list[str]:
-    """Return sentences about the range in which an export of a gear is valid; none if nothing states where it was measured."""
-    return [f"valid where the gear was measured, by {each}" for each in gear_set.measured_ranges]
+    """Return sentences about the ranges in which a gear was measured; none if nothing states where it was."""
+    accepted = "; a check failed, as the note of the gear states" if ACCEPTED in gear_set.note else ""
+    return [
+        f"its identified numbers were measured by {each}; nothing checks them beyond{accepted}"
+        for each in gear_set.measured_ranges
+    ]
 
 
 def _commented(path: str, content: str | bytes, lines: Sequence[str]) -> str | bytes:

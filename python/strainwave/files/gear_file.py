@@ -48,6 +48,8 @@ class Contents(Protocol):
     """Content of a file, as members of a gear set."""
 
     @property
+    def note(self) -> str: ...
+    @property
     def gear(self) -> Gear: ...
     @property
     def sources(self) -> Mapping[str, Entry]: ...
@@ -59,6 +61,7 @@ class Contents(Protocol):
     def validation(self) -> tuple[Validation, ...]: ...
 
 
+ACCEPTED = "Accepted in spite of failed checks"  # begins what the note of a gear says of them
 MAX_TOML_BYTES = 2**21  # of a gear or mapping file: a covariance of 200 parameters takes half of it
 _TEXT_KEYS = ("name", "maker", "note")
 _PART_OF_KEY = r"""(?:"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+'|(?<![\w-])[\w-]++)[ \t]*+"""
@@ -103,7 +106,12 @@ def origins(gear_set: Contents) -> list[str]:
     lines = origin_lines({name: model for name, model in models.items() if model is not None}, gear_set.sources)
     if not lines or not (ranges := measured_ranges(gear_set)):
         return lines
-    return [*lines, "valid where its files were measured; beyond, nothing checks it:", *(f"  {each}" for each in ranges)]
+    accepted = "; a check failed, as its note states" if ACCEPTED in gear_set.note else ""
+    return [
+        *lines,
+        f"identified numbers were measured by, and nothing checks them beyond{accepted}:",
+        *(f"  {each}" for each in ranges),
+    ]
 
 
 def measured_ranges(gear_set: Contents) -> list[str]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 from strainwave.equality import ComparedByFields
 from strainwave.files.entries import Entry, check_line
 from strainwave.files.folder import LINK_NOT_FOLLOWED
+from strainwave.files.gear_file import ACCEPTED
 from strainwave.files.gear_set import GearSet
 from strainwave.files.identified_tables import Validation
 from strainwave.files.recording import Recording
@@ -115,7 +116,7 @@ class Identified(ComparedByFields, Pictured, Reported):
             return self.gear_set
         failed = "; ".join(f"{check.source}: {check.message}" for check in self.failed)
         note = f"{self.gear_set.note} " if self.gear_set.note else ""
-        return self.gear_set.replace(note=f"{note}Accepted in spite of failed checks: {failed}.")
+        return self.gear_set.replace(note=f"{note}{ACCEPTED}: {failed}.")
 
     @cached_property
     def states(self) -> tuple[ParameterState, ...]:

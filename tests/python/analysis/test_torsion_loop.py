@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.analysis.torsion_loop import loop_sigma, torsion_loop
+from strainwave.analysis.torsion_loop import loop_sigma, measured_torque, torsion_loop
 from strainwave.files.identified_tables import Covariance, Validation
 
 SET = sw.GearSet.read("csg-25-100")
@@ -54,3 +55,27 @@ def test_its_standard_deviation_is_that_of_drawn_gears() -> None:
 def test_without_a_stated_deviation_the_loop_has_none() -> None:
     assert loop_sigma(SET, 40.0) is None
     assert all(each.sigma is None for each in sw.compare(SET, with_slips([4e3], [1.0])) if each.path.startswith("loop"))
+
+
+@pytest.mark.parametrize(("peak", "sure"), [(79.0, True), (81.0, False)])
+def test_a_loop_far_below_what_one_was_measured_to_has_no_deviation(peak: float, sure: bool) -> None:
+    """Of 67 N.m one element stood for two: at 2.7 N.m the same joint differed by 34 standard deviations from itself."""
+    far = replace(MEASURED, measured={"output_torque": (-10.0, peak)})
+    found = sw.compare(with_slips([4e3], [1.0]), with_slips([4e3], [1.3]).replace(validation=(far,)))
+    loop = [each for each in found if each.path.startswith("loop to 40 N.m: ")]
+    assert {each.sigma is None for each in loop} == {not sure}
+    reached = [(each.first, each.second) for each in loop if each.path.endswith(": was measured to")]
+    assert reached == ([] if sure else [(40.0, peak)])
+
+
+def test_a_torque_counts_that_determines_the_loop() -> None:
+    log = Validation("b.csv", "log", "current", "A", 0.1, 9.0, 0.1, 9.0, measured={"output_torque": (-3.0, 50.0)})
+    one = with_slips([4e3], [1.0])
+    assert measured_torque(one.replace(validation=(MEASURED, log))) == 40.0
+    assert measured_torque(one.replace(validation=(log,))) is None
+    spring = {"gear.stiffness.k": sw.files.Entry("identified from b.csv", uncertainty=100.0)}
+    assert measured_torque(one.replace(validation=(MEASURED, log), sources={**one.sources, **spring})) == 50.0
+
+
+def test_a_loop_without_slip_is_a_line_to_the_last_digit() -> None:
+    assert torsion_loop(with_slips([4e3], [9.0]).gear, 5.0)[2:].tolist() == [0.0, pytest.approx(-2.5 / 2.4e4), 0.0]

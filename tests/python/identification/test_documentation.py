@@ -10,7 +10,7 @@ from strainwave.identification.candidates import motion_model
 from strainwave.identification.checks import comparisons, logs, sizes, unexplained
 from strainwave.identification.experiments import motion_log
 from strainwave.identification.fitting import influence
-from strainwave.identification.kinds import along_motion
+from strainwave.identification.kinds import along_motion, torsion_loop
 from strainwave.identification.results import combined_parameter, file_result, identifiability
 
 PAGE = " ".join(Path(__file__).parents[3].joinpath("docs", "reference", "identify.md").read_text(encoding="utf-8").split())
@@ -37,6 +37,7 @@ def percent(share: float) -> str:
         f"with an RMS of more than {percent(unexplained.MAX_SHARE_OF_SHAPE)} of the signal",
         f"White noise repeats as well in 1 of {1.0 / unexplained.MAX_CHANCE_OF_SHAPE:g} records",
         f"A shape of {100.0 * unexplained.MIN_SHARE_OF_SHAPE:g} to {percent(unexplained.MAX_SHARE_OF_SHAPE)} is a remark",
+        f"an error on held-out data that is at least {percent(round(1.0 - torsion_loop.MAX_ERROR_OF_RICHER, 3))} smaller",
         f"more than {percent(sizes.MAX_SHARE_OF_ONE_SIZE)} of the torques of a friction table have one size",
         f"the friction is more than {sizes.MAX_FACTOR:g} times as large or small, "
         f"in a log more than {sizes.MAX_FACTOR_OF_LOG:g}",

@@ -265,19 +265,23 @@ def judged_shape(
     words += f"; the model lacks {missing}" if large else ""
     moved = f", which moves {listed(numbers)} by more than the uncertainty" if numbers else ""
     check = Check(SHAPE_OF_RESIDUALS, source, size, limit, unit, failed, f"{words}{moved}" if failed else "", remedy)
-    remark = f"{words}. It moves no number that is determined by more than its uncertainty: {remedy}" if large else words
+    remark = f"{words}. What it moves is part of ±: {remedy}" if large else words
     return Judged((check,), (remark,) if MIN_SHARE_OF_SHAPE * varies < size and not failed else ())
 
 
 def largest_shape(residual: Array, abscissae: Mapping[str, Array], varies: float) -> str:
-    """Return the abscissa over which a residual has its largest shape; empty if none is significant, or large enough to state.
+    """Return the abscissa over which a residual has its largest shape; empty if that is not significant, or too small to count.
+
+    One over the speed counts only if it is large enough to fail: torques over the speed resemble friction, so that an
+    arbitrary one would move it far, and how far other laws of friction lie apart is known.
 
     Args:
         residual, abscissae, varies: as `judged_shape`
     """
     sizes = _sizes(residual, abscissae)
     name = max(sizes, key=lambda each: sizes[each], default="")
-    return name if name and sizes[name] > MIN_SHARE_OF_SHAPE * varies else ""
+    least = MAX_SHARE_OF_SHAPE if name == OVER_SPEED else MIN_SHARE_OF_SHAPE
+    return name if name and sizes[name] > least * varies else ""
 
 
 def _sizes(residual: Array, abscissae: Mapping[str, Array], *, ordered: bool = False) -> dict[str, float]:

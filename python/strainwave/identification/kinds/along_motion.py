@@ -25,7 +25,7 @@ from strainwave.identification.candidates.motion_candidate import (
     with_rotor,
 )
 from strainwave.identification.candidates.motion_model import INPUT, LOSSES, is_one_wave, sliding
-from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, best_delay, fit_plain, gravity_sigma, moving
+from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, fit_plain, gravity_sigma, moving
 from strainwave.identification.checks.logs import (
     CONSTANT_BY_VOLTAGE,
     INERTIA_IN_TWO_WAYS,
@@ -221,15 +221,20 @@ def _shifts_by_shape(best: MotionCandidate, over: str) -> dict[str, float]:
 
 def _shifts_by_late_effort(best: MotionCandidate) -> dict[str, float]:
     """Return how far the numbers of a fit move by a delay that is too long to be fitted, as `_shifts_by`; empty without one."""
-    if not _is_too_late(best):
-        return {}
-    return _shifts_by(best, [np.gradient(best.log.whole(best.fit.parts[0].model, nuisances_of(best.fit)))])
+    return _shifts_by(best, [_change_per_sample(best)]) if _samples_late(best) != 0.0 else {}
 
 
-def _is_too_late(best: MotionCandidate) -> bool:
-    """True if plain least squares predicts best with the longest delay that is tried, and the model has none."""
-    late = abs(best_delay(best.log, best.model.drive)) > (MAX_DELAY_SAMPLES - 0.5) * best.log.motion.step
-    return late and not best.log.delayed
+def _samples_late(best: MotionCandidate) -> float:
+    """Return how many samples the effort comes behind the motion, or ahead of it if negative, too many to be fitted; else 0."""
+    if best.log.delayed:
+        return 0.0
+    late = -float(_solved_with(best, [_change_per_sample(best)])[-1])
+    return late if abs(late) > MAX_DELAY_SAMPLES - 0.5 else 0.0
+
+
+def _change_per_sample(best: MotionCandidate) -> Array:
+    """Return by how much the modelled effort changes from one sample to the next, on the grid of its motion, shape (m,)."""
+    return np.gradient(best.log.whole(best.fit.parts[0].model, nuisances_of(best.fit)))
 
 
 def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, float]:
@@ -239,6 +244,12 @@ def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, floa
         best: the fit of a log
         series: on the grid of its motion, shape (m,) each
     """
+    unknowns = solved_problem(best.fit)[0].plan.unknowns
+    return {plain(each.path): float(shift) for each, shift in zip(unknowns, _solved_with(best, series), strict=False)}
+
+
+def _solved_with(best: MotionCandidate, series: Sequence[Array]) -> Array:
+    """Return by how much the unknowns of a fit change, and the shares of further series; arguments as of `_shifts_by`."""
     problem, x = solved_problem(best.fit)
     weights = problem.weights(x)
     weight = float(weights[0].rows.item())
@@ -246,8 +257,7 @@ def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, floa
     of_priors, right = problem.prior_rows()
     columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(series)))])])
     left = np.concatenate([weight * problem.residuals(x)[0][0], right - of_priors @ x])
-    shifts = solved(columns, left)
-    return {plain(each.path): float(shift) for each, shift in zip(problem.plan.unknowns, shifts, strict=False)}
+    return solved(columns, left)
 
 
 def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:
@@ -285,10 +295,11 @@ def _other_joints(file: Recognised, log: MotionLog) -> Iterator[str]:
 
 def _delay(best: MotionCandidate) -> Iterator[str]:
     """Yield the sentence about a delay that was fitted, or that is too long to be fitted."""
-    if _is_too_late(best):
+    if (late := _samples_late(best)) != 0.0:
+        samples, time, way = abs(late), 1e3 * abs(late) * best.log.motion.step, "behind" if late > 0.0 else "ahead of"
         yield (
-            f"a delay of {best.log.effort} of {MAX_DELAY_SAMPLES} samples or more would fit better: it was "
-            "filtered, or another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
+            f"{best.log.effort} comes about {samples:.2g} samples, {time:.2g} ms, {way} the motion: it was filtered, or "
+            "another clock stamped it. No such delay is fitted; what it moves is part of ±. Record it unfiltered"
         )
     for nuisance in best.fit.estimates:
         if nuisance.path == "delay":

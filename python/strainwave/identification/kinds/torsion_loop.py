@@ -43,9 +43,10 @@ from strainwave.identification.results.pictures import Picture
 from strainwave.questions import LOG_AT_RATE, Answer, QuestionError
 from strainwave.statistics.determined_sum import DeterminedSum
 from strainwave.statistics.residuals import shape
-from strainwave.typeset import percent, quantity
+from strainwave.typeset import number, percent, quantity
 
 Array = NDArray[np.float64]
+MAX_ERROR_OF_RICHER = 0.8  # of the error of the model that is taken: a richer one that gains less is no remark
 
 MIN_LOOP_ROWS = 4  # of a loop or branch
 MIN_TURNING = 2.0 * np.pi  # rad: a shaft that runs on for longer is not twisted
@@ -322,16 +323,18 @@ def _remarks(
 
 
 def _of_richer_model(best: TorsionCandidate, others: Sequence[TorsionCandidate], left: Array) -> Iterator[str]:
-    """Yield the richer model that a loop shows, if the simpler one that is taken leaves a significant shape."""
+    """Yield the richer model that predicts clearly better, if the simpler one that is taken leaves a significant shape."""
     repeats = shape(left, np.arange(float(len(left))), ordered=True)
-    richer = min((each for each in others if each.error < best.error), key=lambda each: each.error, default=None)
+    richer = min(
+        (each for each in others if each.error < MAX_ERROR_OF_RICHER * best.error), key=lambda each: each.error, default=None
+    )
     if repeats is None or repeats.chance > MAX_CHANCE_OF_SHAPE or richer is None:
         return
     yield (
-        f"the residual has a shape along the loop, RMS {quantity(repeats.size, 'N.m')}: {richer.name} predicts better, with "
-        f"{quantity(richer.error, 'N.m')} in place of {quantity(best.error, 'N.m')}. It is not taken, as it gains less than "
-        f"{percent(MIN_ERROR_SHARE)} of the range of the torque. An element of the model that is taken may stand for several; "
-        "--rank compares all models"
+        f"the residual has a shape along the loop, RMS {quantity(repeats.size, 'N.m')}: {richer.name} predicts better, with an "
+        f"error on held-out data of {number(richer.error, 3)} N·m in place of {number(best.error, 3)} N·m. It is not taken, as "
+        f"it gains less than {percent(MIN_ERROR_SHARE)} of the range of the torque. An element of the model that is taken may "
+        "stand for several; --rank compares all models"
     )
 
 

@@ -13,12 +13,14 @@ from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.unexplained import (
     MAX_SHARE_OF_SHAPE,
+    OVER_OUTPUT,
     OVER_SPEED,
     OVER_TURN,
     SHAPE_OF_RESIDUALS,
     causes,
     has_shape,
     judged_shape,
+    largest_shape,
     left,
 )
 from strainwave.report.identify import identify_report
@@ -198,6 +200,32 @@ def test_gravity_is_as_uncertain_as_a_second_load_that_the_model_lacks(size: flo
     assert any("has a shape over the angle of the output" in each for each in file.remarks) == (size > 0.0)
     for path, truth in {"gear.friction_input.coulomb": 0.03, "gear.friction_input.viscous": 2e-4}.items():
         assert abs(estimates[path].value - truth) < 2.0 * estimates[path].sigma < 0.3 * truth
+
+
+@pytest.mark.slow("identification")
+def test_a_log_with_a_second_load_that_makes_its_inertia_wrong_fails() -> None:
+    """A torque at 3.8 times the angle, 70 % of the others: the inertia of 16 kg.m2 came out as 26 with nearly no error."""
+    time = np.arange(0.0, 30.0, 0.01)
+    angle = 0.7 + 0.8 * np.sin(1.4 * time) + 0.35 * np.sin(2.0 * time)
+    speed, rise = (np.gradient(angle, time), np.gradient(np.gradient(angle, time), time))
+    torque = 16.0 * rise + 20.0 * np.sin(angle) + 2.6 * np.sign(speed) + 1.4 * speed
+    torque += 0.7 * np.std(torque) * np.sqrt(2.0) * np.cos(3.8 * angle + 2.0)
+    torque += 0.3 * np.random.default_rng(0).standard_normal(len(time))
+    log = sw.Recording(
+        {"time": time, "output_angle": angle, "joint_torque": torque},
+        {"time": "s", "output_angle": "rad", "joint_torque": "N.m"},
+    )
+    failed = {check.name: check.message for check in sw.identify("csg-20-100", {"log": log}).failed}
+    assert "moves load.inertia by more than the uncertainty" in failed[SHAPE_OF_RESIDUALS]
+
+
+@pytest.mark.parametrize(
+    ("over", "share", "counts"), [(OVER_OUTPUT, 0.05, True), (OVER_SPEED, 0.05, False), (OVER_SPEED, 0.35, True)]
+)
+def test_a_small_shape_over_the_speed_makes_no_number_less_certain(over: str, share: float, counts: bool) -> None:
+    """Torques over the speed resemble friction: an arbitrary one made right friction of EMPS five times as uncertain."""
+    residual = 0.1 * NOISE + share * np.sqrt(2.0) * np.sin(ANGLE)
+    assert largest_shape(residual, {over: np.mod(ANGLE, 2.0 * np.pi)}, 1.0) == (over if counts else "")
 
 
 def test_few_samples_have_no_check() -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.kinds.torsion_loop import _gain_sigma
+from strainwave.identification.kinds.torsion_loop import MAX_ERROR_OF_RICHER, _gain_sigma, _of_richer_model
 
 OWN = sw.load("hfuc-20-80")
 GEAR = OWN.replace(friction_input=OWN.friction_input.replace(coulomb=0.0, breakaway=0.0))
@@ -64,5 +66,17 @@ def test_elements_that_one_element_stands_for_leave_a_shape_and_a_remark(breakaw
     loop = sw.Recording({"twist": twist, "torque": torque}, {"twist": "rad", "torque": "N.m"})
     (file,) = sw.identify("csg-20-100", {"torsion": loop}).files
     assert file.model == "cubic spring with 1 Maxwell element"
-    remark = "cubic spring with 2 Maxwell elements predicts better"
-    assert any(remark in each for each in file.remarks) == (len(breakaway) == 2)
+    remark = "cubic spring with 2 Maxwell elements predicts better, with an error on held-out data of "
+    errors = [each.split(remark)[1].split(". ")[0] for each in file.remarks if remark in each]
+    assert len(errors) == len(breakaway) - 1
+    for richer, taken in (each.split(" in place of ") for each in errors):
+        assert float(richer.removesuffix(" N·m")) < MAX_ERROR_OF_RICHER * float(taken.removesuffix(" N·m"))
+
+
+@pytest.mark.parametrize("share", [0.75, 0.85])
+def test_a_richer_loop_that_gains_little_is_no_remark(share: float) -> None:
+    taken: Any
+    richer: Any
+    taken, richer = (SimpleNamespace(name=name, error=error) for name, error in (("one", 0.1), ("two", 0.1 * share)))
+    waves = np.sin(np.linspace(0.0, 12.0, 400))
+    assert len(list(_of_richer_model(taken, [richer], waves))) == (share < MAX_ERROR_OF_RICHER)

@@ -7,6 +7,7 @@ import pytest
 import strainwave as sw
 
 SPEED = np.geomspace(2.0, 200.0, 12)
+UNITS = {"time": "s", "output_angle": "rad", "joint_torque": "N.m"}
 
 
 def test_a_table_of_the_output_counts_at_the_input_of_the_gear() -> None:
@@ -27,3 +28,21 @@ def test_a_torsion_loop_has_the_range_of_its_torque() -> None:
     loop = sw.Recording({"twist": twist, "torque": torque}, {"twist": "rad", "torque": "N.m"})
     (validation,) = sw.identify("csg-20-100", {"torsion": loop}, accept=True).gear_set.validation
     assert validation.measured == {"output_torque": (-40.0, 40.0)}
+
+
+@pytest.mark.parametrize("gravity", [0.0, 12.0])
+def test_a_log_that_determines_neither_gravity_nor_inertia_has_no_range_of_torque(gravity: float) -> None:
+    """It was stated as 2e-10 N.m either way."""
+    time = np.arange(0.0, 12.0, 0.01)
+    angle = 0.9 * np.sin(time) + 0.3 * np.sin(2.1 * time)
+    speed = np.gradient(angle, time)
+    torque = (
+        6.0 * np.sign(speed)
+        + 4.0 * speed
+        + gravity * np.sin(angle)
+        + 0.05 * np.random.default_rng(1).standard_normal(len(time))
+    )
+    log = sw.Recording({"time": time, "output_angle": angle, "joint_torque": torque}, UNITS)
+    (validation,) = sw.identify("csg-20-100", {"log": log}, accept=True).gear_set.validation
+    assert ("output_torque" in validation.measured) == (gravity > 0.0)
+    assert validation.measured.keys() >= {"input_speed", "output_angle"}
