@@ -39,6 +39,7 @@ CHANGED: dict[str, dict[str, Any]] = {
     "fourier": HARMONICS,
     "misalignment": {"offset": 1e-4, "housing_tilt_x": 1e-3, "generator_eccentricity": 2e-5},
     "tooth_errors": {"flexspline_amplitude": [1e-5], "flexspline_phase": [0.0], "circular_spline_deviation": 1e-6},
+    "temperature_dependent": {"law": sw.kinematic_error.Fourier(**HARMONICS)},
     "scaled": {"law": sw.kinematic_error.Fourier(**HARMONICS)},
     "stochastic": {"amplitude": 2e-5, "load_sensitivity": 0.1, "speed_sensitivity": 0.01},
 }  # fmt: skip
