@@ -15,8 +15,7 @@ struct TwoSided {
     S negative_factor{1.0};
 
     static constexpr auto name = "two_sided";
-    static constexpr auto source =
-        SW_REVIEW
+    static constexpr auto source = SW_REVIEW
         ", section 3: the cubic polynomial \"cannot describe asymmetric behavior\"; one factor for the negative sense is assumed";
     static constexpr bool odd = false;
     static constexpr auto doc = R"(
@@ -39,7 +38,8 @@ struct TwoSided {
     template <class Self, class Visit>
     static constexpr void fields(Self& m, Visit&& visit) {
         visit(SW_PART(m, law, "The spring at positive twist"));
-        visit(SW_REQUIRED(m, negative_factor, "1", "Torque at a negative twist f, relative to that at the opposite twist", smallest));
+        visit(
+            SW_REQUIRED(m, negative_factor, "1", "Torque at a negative twist f, relative to that at the opposite twist", smallest));
     }
 
     constexpr auto compile() const { return TwoSided<S, decltype(compiled(law))>{compiled(law), negative_factor}; }
