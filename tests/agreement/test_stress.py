@@ -22,7 +22,7 @@ def test_a_random_drive_ends_in_numbers_or_with_a_reason_and_is_in_a_pack_what_i
 
 @pytest.mark.slow("physics")
 def test_random_drives_hold_every_model_of_every_list_between_them() -> None:
-    found = set().union(*(models_of(model(sw.Drive, np.random.default_rng(number))) for number in range(200)))
+    found = set().union(*(models_of(model(sw.Drive, np.random.default_rng(number))) for number in range(400)))
     assert {one.__name__ for models in _core.families.values() for one in models.values()} - found == set()
 
 

@@ -40,6 +40,7 @@ def test_a_stub_defines_all_that_its_module_does(name: str) -> None:
     assert public - names(stub(module)) == set()
 
 
+@pytest.mark.slow("physics")
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: next(iter(family.values())).__module__)
 def test_a_stub_has_every_field_of_every_model(family: dict[str, type[Any]]) -> None:
     for model in family.values():

@@ -160,7 +160,7 @@ def test_a_spoilt_log_is_used_and_what_was_done_is_said(tmp_path: Path, name: st
     opposite = "in log.csv current is counted in the sense of the output, which turns against the input"
     of_motor = found.gear_set.sources["motor.torque_constant"].source
     assert (opposite in of_motor) == (name == "a reversed current")
-    assert (of_motor in "\n".join(found.gear_set.origins)) == (name == "a reversed current")
+    assert (opposite in "\n".join(found.gear_set.origins)) == (name == "a reversed current")
     assert of_motor.endswith("current of the log = -current of the model") == (name == "a reversed current")
 
 
