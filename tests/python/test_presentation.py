@@ -144,6 +144,18 @@ def of_orders() -> Iterator[Any]:
     yield sw.diagnose.MisalignmentEstimate("current", "single", (3e-6, 4e-6), 1e-14 * np.eye(2), 40, 1.1)
 
 
+def of_wear() -> Iterator[Any]:
+    """Yield the life of a gear, its error over the temperature, and the loss of its loops by source."""
+    yield sw.diagnose.wear_life([0.0, 1e6, 2e6, 3e6], {"play": [1.0e-4, 1.31e-4, 1.58e-4, 1.92e-4]}, {"play": 4e-4})
+    yield sw.orders.error_over_temperature([sw.transmission_error(encoders())] * 3, [283.15, 293.15, 303.15])
+    way, units, loops = np.sin(np.linspace(0.5, 4.5, 801) * np.pi), {"twist": "rad", "torque": "N.m"}, []
+    for reach in (10.0, 40.0):
+        torque = reach * way + (0.5 + 0.02 * np.abs(reach * way)) * np.sign(np.gradient(way))
+        loops.append(sw.Recording({"twist": reach * way / 2e4, "torque": torque}, units))
+    shares = sw.identification.loss_shares(loops, sw.load("hfuc-25-100"))
+    yield from (shares, shares["gear, dry"])
+
+
 def of_rig() -> Iterator[Any]:
     """Yield what the torsion rig measures and computes."""
     bench = sw.rig.load("couple-rig")
@@ -167,7 +179,7 @@ def of_rig() -> Iterator[Any]:
 @cache
 def results() -> Mapping[str, Any]:
     """Return a result of each type, by the name of the type."""
-    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_rig) for each in kind())
+    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_wear, of_rig) for each in kind())
     return {type(each).__name__: each for each in everything}
 
 
