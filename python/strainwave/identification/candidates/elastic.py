@@ -422,7 +422,7 @@ def elastic_starts(
     twist = twist - 0.5 * (twist[used].max() + twist[used].min())
     half = float(np.abs(twist[used]).max())
     rate = np.gradient(twist, motion.time)
-    swing = np.sin(motion.output_angle(ratio)), np.cos(motion.output_angle(ratio))
+    swing = np.sin(motion.angle / ratio), np.cos(motion.angle / ratio)
     free = [acceleration, swing[1]] if by_gravity else [*swing]
     free += [np.ones_like(twist), motion.speed]
     size = float(np.abs(torque[used]).max())
