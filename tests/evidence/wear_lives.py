@@ -24,13 +24,13 @@ Array = NDArray[np.float64]
 
 FLEETS, GEARS = 50, 6
 RATIO, RADIUS, PRESSURE_ANGLE, PAIRS = 100.0, 0.025, 0.35, 60  # of the teeth in contact at once
-SLIDING = 0.05  # sliding distance per distance that the pitch circle of the output turns
+SLIDING_SHARE = 0.05  # sliding distance per distance that the pitch circle of the output turns
 HYSTERESIS, AMPLITUDE = 1e-4, 6e-5  # rad, of a new gear: lost motion and error
 PLAY_LIMIT, AMPLITUDE_LIMIT = 4e-4, 2.5e-4  # rad
 WAVE_SHARE = (0.1, 0.6)  # of the play, by which the error grows
 SET_UP = 6e-6  # rad: standard deviation of both quantities from one set-up to the next
-NOISE = 1e-5  # rad, of the encoder of the output
-BLOCKS = 200  # of duty up to the last test
+ENCODER_NOISE = 1e-5  # rad, of the encoder of the output
+DUTY_BLOCKS = 200  # of duty up to the last test
 
 
 @dataclass
@@ -56,7 +56,7 @@ class Gear:
         angle = stroke * np.sin(2.0 * pi * time)
         load = torque * np.sin(2.0 * pi * time + phase) + self.random.uniform(-10.0, 10.0)
         per_pair = np.abs(load) / (RADIUS * np.cos(PRESSURE_ANGLE) * PAIRS)  # N
-        slid = SLIDING * RADIUS * np.abs(np.diff(angle))  # m
+        slid = SLIDING_SHARE * RADIUS * np.abs(np.diff(angle))  # m
         self.depth += scale * self.coefficient * float(0.5 * (per_pair[1:] + per_pair[:-1]) @ slid)
         columns = {"torque": load, "output_angle": angle}
         self.work += scale * sw.diagnose.transmitted_work(sw.Recording(columns, {"torque": "N.m", "output_angle": "rad"}))
@@ -68,7 +68,7 @@ class Gear:
         way = np.sign(np.gradient(theta))
         error = (AMPLITUDE + self.wave_share * self.play + set_up[1]) * np.sin(2.0 * theta + 0.3)
         error += 0.5 * (HYSTERESIS + self.play + set_up[0]) * way
-        output = -theta / RATIO - error + self.random.normal(0.0, NOISE, len(theta))
+        output = -theta / RATIO - error + self.random.normal(0.0, ENCODER_NOISE, len(theta))
         record = sw.Recording({"input_angle": theta, "output_angle": output}, {"input_angle": "rad", "output_angle": "rad"})
         found = sw.transmission_error(record, ratio=-RATIO)
         assert found.lost_motion is not None
@@ -81,7 +81,7 @@ def life_of(random: np.random.Generator) -> tuple[sw.diagnose.WearLife, float, i
     scale = float(random.uniform(20.0, 120.0))
     works, values = [gear.work], [gear.tested()]
     for _ in range(tests - 1):
-        for _ in range(BLOCKS // (tests - 1)):
+        for _ in range(DUTY_BLOCKS // (tests - 1)):
             gear.use(scale)
         works.append(gear.work)
         values.append(gear.tested())

@@ -1,4 +1,4 @@
-"""What every spring obeys: strictly rising, invertible, energy and tangent belong to its torque; odd, unless it says not.
+"""Laws of every spring: it rises strictly and is invertible; energy and tangent belong to its torque. It is odd unless listed.
 
 Of one with play all this holds beyond the play: a torque that is not zero has its twist there.
 """

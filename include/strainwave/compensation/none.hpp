@@ -3,7 +3,7 @@
 
 namespace strainwave::compensation {
 
-/// What every compensator is that does nothing: feed-forward, dither, observer or learning.
+/// Base of every compensator without effect: feed-forward, dither, observer or learning.
 template <class S>
 struct None {
     using Base = None;

@@ -30,7 +30,7 @@ struct ReferenceMotion {
     constexpr ReferenceLags<S> rate() const { return {acceleration, jerk}; }
 };
 
-/// What the laws share that contain a model of gear and load, and derivatives of the command by lags. A law has the members
+/// Base of the laws with a model of gear and load, and with derivatives of the command by lags. A law has the members
 /// gear, load, reference_time, actuation_per_torque, actuation_per_speed and limit, and
 ///
 ///     motor_torque(state, command, measured) -> torque of the motor that it asks for [N.m]

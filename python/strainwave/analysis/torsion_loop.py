@@ -31,9 +31,9 @@ def measured_torque(gear_set: GearSet) -> float | None:
     """Return the largest torque at the output under which files of a gear determine its loop [N.m]; None without."""
     sources = [entry.source for path, entry in gear_set.sources.items() if path.startswith(LAWS)]
     ends = [
-        np.abs(each.measured["output_torque"]).max()
-        for each in gear_set.validation
-        if "output_torque" in each.measured and (each.kind == "torsion" or any(each.file in source for source in sources))
+        np.abs(file.measured["output_torque"]).max()
+        for file in gear_set.validation
+        if "output_torque" in file.measured and (file.kind == "torsion" or any(file.file in source for source in sources))
     ]
     return float(max(ends)) if ends else None
 

@@ -1,6 +1,6 @@
 """A verb of the command in a process of its own, which writes its progress, output and question as lines of JSON.
 
-The studio starts it with the words of a command line. `read` in place of a verb tells how files are read.
+The studio starts it with the words of a command line. With `read` in place of a verb it writes how files are read.
 """
 
 from __future__ import annotations

@@ -104,12 +104,12 @@ class WearLife(Presented):
         return f"{self.remaining:.3g} J, from {self.low:.3g} to {self.high:.3g} J, by its {self.limited_by}"
 
     def _rows(self) -> Iterator[Row]:
-        for each in self.trends:
-            unit = QUANTITY_UNITS[each.name]
-            yield Row(f"{each.name} at no work", each.start, unit, note=f"limit {each.limit:.4g} {unit}")
-            note = "" if each.determined else "not determined"
-            yield Row(f"rate of the {each.name}", each.rate, f"{unit}/J", each.rate_sigma, note)
-            yield Row(f"life by the {each.name}", (each.low, each.high), "J")
+        for trend in self.trends:
+            unit = QUANTITY_UNITS[trend.name]
+            yield Row(f"{trend.name} at no work", trend.start, unit, note=f"limit {trend.limit:.4g} {unit}")
+            note = "" if trend.determined else "not determined"
+            yield Row(f"rate of the {trend.name}", trend.rate, f"{unit}/J", trend.rate_sigma, note)
+            yield Row(f"life by the {trend.name}", (trend.low, trend.high), "J")
         yield Row("remaining life", (self.low, self.high), "J", note=self.limited_by or "not determined")
 
     @property
@@ -123,14 +123,14 @@ class WearLife(Presented):
 
     @property
     def fault(self) -> _core.fault.ToothWear:
-        """Wear at the end of the life: what each quantity whose rate is determined has changed by then.
+        """Wear at the end of the life: the changes of the quantities whose rate is determined.
 
         Raises:
             ValueError: the life is not determined
         """
         work = self._whole_life()
-        changed = {each.name: each.rate * work for each in self.trends if each.determined}
-        start = {each.name: each.start for each in self.trends}
+        changed = {trend.name: trend.rate * work for trend in self.trends if trend.determined}
+        start = {trend.name: trend.start for trend in self.trends}
         return _core.fault.ToothWear(
             play=changed.get("play", 0.0),
             amplitude=changed.get("amplitude", 0.0),
@@ -140,7 +140,7 @@ class WearLife(Presented):
 
     def _whole_life(self) -> float:
         """Return the work from the new gear to the end of its life [J]."""
-        lives = [(each.limit - each.start) / each.rate for each in self.trends if each.determined]
+        lives = [(trend.limit - trend.start) / trend.rate for trend in self.trends if trend.determined]
         if not lives:
             raise ValueError(f"the life is not determined: {'; '.join(self.remarks)}")
         return min(lives)
@@ -174,19 +174,19 @@ def wear_life(work: ArrayLike, tests: Mapping[str, Sequence[float]], limits: Map
     _check(done, tests, limits)
     confidence = 1.0 - (1.0 - CONFIDENCE_LEVEL) / len(tests)
     trends = tuple(_trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence) for name in tests)
-    first = min(trends, key=lambda each: each.remaining)
+    first = min(trends, key=lambda trend: trend.remaining)
     remarks = tuple(
-        f"the rate of the {each.name}, {each.rate:.2g} ± {each.rate_sigma:.1g} {QUANTITY_UNITS[each.name]}/J, does not "
+        f"the rate of the {trend.name}, {trend.rate:.2g} ± {trend.rate_sigma:.1g} {QUANTITY_UNITS[trend.name]}/J, does not "
         "differ from zero in the direction of its limit: more tests, or tests after more work, determine it"
-        for each in trends
-        if not each.determined
+        for trend in trends
+        if not trend.determined
     )
     return WearLife(
         trends,
         first.name if isfinite(first.remaining) else "",
         first.remaining,
-        min(each.low for each in trends),
-        min(each.high for each in trends),
+        min(trend.low for trend in trends),
+        min(trend.high for trend in trends),
         remarks,
     )
 
@@ -199,7 +199,7 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         if name not in limits:
             raise ValueError(f"limits lacks {quoted(name)}; give the value at which the gear is worn out")
         if len(values) != len(work):
-            raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for each")
+            raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for trend")
     if len(work) < MIN_TESTS:
         raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests; there are {len(work)}: test again")
     if float(np.ptp(work)) == 0.0:

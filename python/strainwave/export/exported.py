@@ -110,8 +110,8 @@ def valid_ranges(gear_set: GearSet) -> list[str]:
     """Return sentences about the ranges in which a gear was measured; none if nothing states where it was."""
     accepted = "; a check failed, as the note of the gear states" if ACCEPTED in gear_set.note else ""
     return [
-        f"its identified numbers were measured by {each}; nothing checks them beyond{accepted}"
-        for each in gear_set.measured_ranges
+        f"its identified numbers were measured by {measured_range}; nothing checks them beyond{accepted}"
+        for measured_range in gear_set.measured_ranges
     ]
 
 

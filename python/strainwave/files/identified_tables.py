@@ -145,9 +145,9 @@ class Validation:
         """The range over which the file was measured; empty if nothing of it is known."""
         if not self.measured:
             return ""
-        known = [f"{_words(name)} {low:.3g} to {high:.3g} {RANGES[name]}" for name, (low, high) in self.measured.items()]
+        ranges = [f"{_words(name)} {low:.3g} to {high:.3g} {RANGES[name]}" for name, (low, high) in self.measured.items()]
         missing = [_words(name) for name in RANGES if name not in self.measured]
-        return f"{self.file}: {listed(known)}{f'; {listed(missing)} not known' if missing else ''}"
+        return f"{self.file}: {listed(ranges)}{f'; {listed(missing)} not known' if missing else ''}"
 
     @property
     def relative(self) -> float:

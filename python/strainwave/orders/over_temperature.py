@@ -17,7 +17,7 @@ from strainwave.statistics.linear_fit import solved
 Array = NDArray[np.float64]
 
 SAME_ORDER = 1e-3  # relative difference of one order in two records, whose measured ratios differ a little
-UNKNOWNS = 4  # of an order: sine and cosine part, and their changes
+UNKNOWNS_PER_ORDER = 4  # sine and cosine part, and their changes
 MIN_PROBABILITY = 1e-3  # of the scatter about straight lines: a smaller one means that they do not explain the phases
 SAME_ZERO = "straight lines explain the phases, as of an input encoder that kept its zero"
 MEASURED_TWICE = (
@@ -193,7 +193,7 @@ class _Line:
 
     @property
     def freedom(self) -> int:
-        return 2 * len(self.lines) - UNKNOWNS
+        return 2 * len(self.lines) - UNKNOWNS_PER_ORDER
 
     def result(self, count: int, allowed: float, comparable: bool) -> OrderOverTemperature:
         """Return the order, one of `count` that are judged together, with its phase only if phases are comparable."""

@@ -119,7 +119,7 @@ class Jobs:
         """Yield what the process of a verb reports, files by their names on the page, and at last its exit code."""
         process = await asyncio.create_subprocess_exec(
             *(sys.executable, *RUNS_VERB, *words),
-            stdin=asyncio.subprocess.PIPE,  # whose end tells the process that this server has ended
+            stdin=asyncio.subprocess.PIPE,  # its end ends the process together with this server
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
             cwd=self._workspace.folder,

@@ -117,7 +117,7 @@ class Compensated(Pictured, Reported):
 
     @property
     def verdict(self) -> str:
-        """What the compensation gains over the baseline, and whether the output does not settle."""
+        """Gain of the compensation over the baseline in words, with a warning if the output does not settle."""
         return f"{self._gain_in_words}{self._unsettled}"
 
     @property
@@ -139,7 +139,7 @@ class Compensated(Pictured, Reported):
 
     @property
     def _gain_in_words(self) -> str:
-        """What the compensation gains over the baseline, in one sentence."""
+        """Gain of the compensation over the baseline, in one sentence."""
         figure, unit = self.goal.judged_by, self.goal.units[self.goal.judged_by]
         before = typeset.quantity(self.baseline.median(figure), unit)
         after = typeset.quantity(self.chosen.median(figure), unit)

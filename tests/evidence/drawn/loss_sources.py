@@ -30,7 +30,7 @@ DESIGNS = (
     "gradual slip",
 )  # fmt: skip
 CYCLES, SAMPLES = 2, 400  # of a loop; of a cycle
-ROOM = 295.0  # K
+ROOM_TEMPERATURE = 295.0  # K
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def widths(truth: Truth, twist: Array, time: Array, *, at_input: bool, temperatu
     span = float(np.ptp(twist))
     bearing, mesh, gear = (bristles(twist, 0.5 * bend * span) for bend in truth.bends)
     torque, rate = truth.spring(twist), np.gradient(twist, time)
-    colder = ROOM - temperature
+    colder = ROOM_TEMPERATURE - temperature
     of_bearing, of_mesh, of_oil = (np.exp(fall * colder) for fall in truth.falls)
     bow = 1.0 - (torque / np.abs(torque).max()) ** 2
     material = truth.ellipse * np.sqrt(np.clip(bow, 0.0, None)) + truth.lens * 3.0 * np.pi / 8.0 * bow
@@ -140,7 +140,7 @@ def loops_of(truth: Truth, design: str, random: np.random.Generator) -> Iterator
     sides = (False,) if design == "output alone" else (True,) if design == "input alone" else (True, False)
     loads = (1.0,) if design == "one load" else (1.0, 0.5, 0.25)
     periods = (60.0,) if design == "one rate" else (60.0, 12.0)
-    temperatures = (ROOM, ROOM + 20.0) if design == "two temperatures" else (ROOM,)
+    temperatures = (ROOM_TEMPERATURE, ROOM_TEMPERATURE + 20.0) if design == "two temperatures" else (ROOM_TEMPERATURE,)
     triangle = bool(random.random() < 0.5)
     for at_input in sides:
         for temperature in temperatures:

@@ -59,7 +59,7 @@ def test_without_a_stated_deviation_the_loop_has_none() -> None:
 
 @pytest.mark.parametrize(("peak", "sure"), [(79.0, True), (81.0, False)])
 def test_a_loop_far_below_what_one_was_measured_to_has_no_deviation(peak: float, sure: bool) -> None:
-    """Of 67 N.m one element stood for two: at 2.7 N.m the same joint differed by 34 standard deviations from itself."""
+    """A loop to 67 N.m determines nothing at 2.7 N.m: there two records of one joint differed by 34 standard deviations."""
     far = replace(MEASURED, measured={"output_torque": (-10.0, peak)})
     found = sw.compare(with_slips([4e3], [1.0]), with_slips([4e3], [1.3]).replace(validation=(far,)))
     loop = [each for each in found if each.path.startswith("loop to 40 N.m: ")]

@@ -25,10 +25,11 @@ from strainwave.identification.candidates.torsion import (
     plain_error,
 )
 from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE, asymmetry_in_words
-from strainwave.identification.candidates.torsion.losses import LossLoop, loss_shares
+from strainwave.identification.candidates.torsion.losses import loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, OVER_LOOP, explained, judged_shape
+from strainwave.identification.experiments.loss_loop import LossLoop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused

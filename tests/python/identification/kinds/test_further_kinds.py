@@ -309,7 +309,7 @@ def test_records_with_an_angle_are_averaged_over_whole_turns(tmp_path: Path) -> 
     files = []
     for each in SPEEDS:
         for speed in (each, -each):
-            time = np.linspace(0.0, 1.2501 * 2.0 * np.pi / each, 4000)
+            time = np.linspace(0.0, 1.2501 * 2.0 * np.pi / each, 1000)
             torque = np.sign(speed) * (COULOMB + VISCOUS * each + 0.02 * np.sin(2.0 * each * time))
             columns = {"time": time, "input_angle": speed * time, "input_torque": torque}
             path = tmp_path / f"turn_{speed:+.0f}.csv"

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import strainwave as sw
 from strainwave.identification import loss_shares
-from strainwave.identification.candidates.torsion.losses import LossLoop
+from strainwave.identification.experiments.loss_loop import LossLoop
 
 from tests.evidence.drawn.loss_sources import SOURCES, outcome, split
 

@@ -34,7 +34,7 @@ from strainwave.identification.candidates.torsion.springs import (
     LINEAR,
     THREE_SEGMENT,
     Answer,
-    Asymmetric,
+    TwoSided,
     SpringKind,
     solve,
 )
@@ -159,7 +159,7 @@ class TorsionCandidate(ComparedByFields):
     @property
     def is_one_sided(self) -> bool:
         """True if its spring differs between the senses of twist."""
-        return isinstance(self.spring, Asymmetric)
+        return isinstance(self.spring, TwoSided)
 
     @property
     def loop(self) -> TorsionLoop:
@@ -282,13 +282,13 @@ def one_sided(best: TorsionCandidate, loop: TorsionLoop, known: Gear) -> list[To
     """
     if loop.single_branch or loop.input_ratio is not None:
         return []
-    spring, training = Asymmetric(best.spring), best.fit.training
+    spring, training = TwoSided(best.spring), best.fit.training
     even: Any = spring.wrapped(best.fit.gear.stiffness, 1.0)
-    found = [finished(best.fit.gear.replace(stiffness=even), resumed(best), training, spring, best.dissipation, known)]
+    fits = [finished(best.fit.gear.replace(stiffness=even), resumed(best), training, spring, best.dissipation, known)]
     for law in FITTED_SPRINGS:
         with suppress(ValueError):  # too few samples, or nothing of this kind fits
-            found.append(candidate(loop, known, training, Asymmetric(law), best.dissipation))
-    return sorted(found, key=lambda each: each.error)
+            fits.append(candidate(loop, known, training, TwoSided(law), best.dissipation))
+    return sorted(fits, key=lambda fit: fit.error)
 
 
 def shows_asymmetry(found: TorsionCandidate) -> bool:

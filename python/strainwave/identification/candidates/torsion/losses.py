@@ -31,11 +31,9 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave._core import Gear
-from strainwave.analysis.branches import turning_points
-from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
-from strainwave.identification.experiments.torsion_loop import TorsionLoop
+from strainwave.identification.experiments.loss_loop import MAX_REACH_DIFFERENCE, LossLoop
 from strainwave.presentation import Presented, Row, Statement
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.determined_sum import sum_by_covariance
@@ -49,118 +47,16 @@ SHAPE_SIGMA = 0.02  # of the loss of a cycle: how far real widths depart from th
 PRIOR_SHARE_SIGMA = 1.0  # of the loss of a cycle: no source loses more than all do
 FALL_SIGMA = 0.05  # 1/K: of the relative fall of friction with the temperature, about none (assumed)
 MIN_CORRELATION_OF_PARTNERS = 0.5  # of shares that are stated as a sum
-MAX_REACH_DIFFERENCE = 0.05  # of the span: reversals of one loop that differ by more are those of several
-MIN_SAMPLES_PER_WAY = 10
 REVERSAL_SHARES = (0.02, 0.06, 0.15)  # of the span, next to a reversal, that is left out; the second is taken
 MAX_PIECES_OF_CURVE = 24  # cubic pieces of the curve that both ways share
 SAMPLES_PER_PIECE = 12
 END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
-RATE_DEGREE = 5  # of the polynomial in time of one way: half a period of a sine to 1e-4
 MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from which on both senses have a width of their own
 ROUNDS_OF_CURVE = 2  # in which curve and widths are fitted in turn
 MIN_NOISE_SHARE = 1e-5  # of the torque: no sensor has less noise
 MIN_MISFIT_SIGMA = 4.0  # standard deviations of a loop's width that no source explains
-PLANNED_SAMPLES = 400
 MAX_PLANNED_LOOPS = 3
 PLANNED_REACHES, PLANNED_RATES, PLANNED_WARMTHS = (1.0, 0.5, 0.25), (1.0, 5.0), (0.0, 20.0)  # of the loop that is there; K
-
-
-# ---- Loops -----------------------------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class LossLoop(ComparedByFields):
-    """Both ways of a torsion loop of one amplitude, referred to the output.
-
-    Attributes:
-        twist: shape (n,) [rad]
-        torque: shape (n,) [N.m]
-        sense: 1 on the way up, -1 down, shape (n,)
-        rate: of the twist without its sign, shape (n,) [rad/s]; not a number without a clock
-        ratio: of the gear without its sign if the loop was measured at the input, 0 if at the output
-        temperature: mean [K]; not a number if it was not measured
-        ends: smallest and largest twist, at the reversals [rad]
-    """
-
-    twist: Array
-    torque: Array
-    sense: Array
-    rate: Array
-    ratio: float
-    temperature: float
-    ends: tuple[float, float]
-
-    @classmethod
-    def of(cls, recording: Recording, gear: Gear) -> LossLoop:
-        """Return the loop of a recording, without the first way of a gear that was not loaded before.
-
-        Raises:
-            ValueError: the columns are none of a loop, it has no two ways, or reversals of several amplitudes
-        """
-        loop = TorsionLoop.of(recording, gear)
-        turns = turning_points(loop.twist)
-        ends = [0, *turns, len(loop.twist) - 1]
-        span = float(np.ptp(loop.twist))
-        away = np.minimum(loop.twist - loop.twist.min(), loop.twist.max() - loop.twist) > MAX_REACH_DIFFERENCE * span
-        if any(away[turns]):
-            raise ValueError("it reverses at several amplitudes; give a recording for each amplitude")
-        first = 1 if away[0] else 0
-        ways = [slice(begin, end) for begin, end in zip(ends[first:-1], ends[first + 1 :], strict=True)]
-        if len(ways) < 2 or min(each.stop - each.start for each in ways[:2]) < MIN_SAMPLES_PER_WAY:
-            raise ValueError(f"the width of a loop needs ways up and down of at least {MIN_SAMPLES_PER_WAY} samples each")
-        sense, rate = np.zeros(len(loop.twist)), np.full(len(loop.twist), np.nan)
-        time = None
-        if "time" in recording and loop.moments is not None:
-            time = loop.moments * float(np.ptp(recording.time))
-        for way in ways:
-            sense[way] = np.sign(loop.twist[way.stop] - loop.twist[way.start])
-            if time is not None:
-                path = np.polynomial.Polynomial.fit(time[way], loop.twist[way], RATE_DEGREE)
-                rate[way] = np.abs(path.deriv()(time[way]))
-        low, high = float(loop.twist.min()), float(loop.twist.max())
-        kept = sense != 0.0
-        warmth = float(np.mean(recording.values("temperature", "K"))) if "temperature" in recording else np.nan
-        ratio = 0.0 if loop.input_ratio is None else abs(loop.input_ratio)
-        return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, warmth, (low, high))
-
-    def apart(self, share: float) -> LossLoop:
-        """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike."""
-        low, high = self.ends
-        kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
-        series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
-        return LossLoop(*series, self.ratio, self.temperature, self.ends)
-
-    @classmethod
-    def planned(cls, ratio: float, stiffness: float, reach: float, rate: float, temperature: float) -> LossLoop:
-        """Return a loop of a linear spring that could be measured, without a width."""
-        up = np.linspace(-reach, reach, PLANNED_SAMPLES // 2)[1:-1]
-        torque = np.concatenate((up, up[::-1]))
-        sense = np.repeat([1.0, -1.0], len(up))
-        ends = -reach / stiffness, reach / stiffness
-        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, temperature, ends)
-
-    @property
-    def is_timed(self) -> bool:
-        """True if the rate of the twist is known."""
-        return bool(np.isfinite(self.rate).all())
-
-    @property
-    def is_warm(self) -> bool:
-        """True if the temperature is known."""
-        return bool(np.isfinite(self.temperature))
-
-    @property
-    def speed(self) -> float:
-        """Median rate of the twist [rad/s]; 0 without a clock."""
-        return float(np.median(self.rate)) if self.is_timed else 0.0
-
-    @property
-    def words(self) -> str:
-        """Side, largest torque, and what else is known of it."""
-        side = "input with the output locked" if self.ratio else "output with the input locked"
-        at_rate = f", {quantity(self.speed, 'rad/s')} of twist" if self.is_timed else ""
-        warm = f", {self.temperature - 273.15:.0f} °C" if self.is_warm else ""
-        return f"±{quantity(0.5 * float(np.ptp(self.torque)), 'N.m')} at the {side}{at_rate}{warm}"
 
 
 # ---- Sources ---------------------------------------------------------------------------------------------------------
@@ -287,15 +183,16 @@ class LossShares(Presented):
         Raises:
             KeyError: the loops contain no such source; names those that they may contain
         """
-        for each in self.shares:
-            if each.name == name:
-                return each
-        raise KeyError(f"{name!r} is no source of these loops; they are {[each.name for each in self.shares]}")
+        by_name = {share.name: share for share in self.shares}
+        if name not in by_name:
+            raise KeyError(f"{name!r} is no source of these loops; they are {list(by_name)}")
+        return by_name[name]
 
     @property
     def in_words(self) -> str:
         """The shares that are separated, in one line."""
-        shares = [f"{each.name} {100.0 * each.share:.0f} ± {100.0 * each.sigma:.0f} %" for each in self.shares if not each.why]
+        separated = [share for share in self.shares if share.is_separated]
+        shares = [f"{share.name} {100.0 * share.share:.0f} ± {100.0 * share.sigma:.0f} %" for share in separated]
         return "; ".join(shares) or "no source is separated"
 
     @property
@@ -308,13 +205,14 @@ class LossShares(Presented):
         )
 
     def _headline(self) -> str:
-        count = sum(each.is_separated for each in self.shares)
+        count = sum(share.is_separated for share in self.shares)
         return f"{count} of {len(self.shares)} sources separated, {quantity(self.loss, 'J')} a cycle of the loop of {self.loop}"
 
     def _rows(self) -> Iterator[Row]:
         yield Row("loss of a cycle", self.loss, "J", note=f"of the loop of {self.loop}")
-        for each in self.shares:
-            yield Row(each.name, each.share, "1", each.sigma, f"not separable: {each.why}" if each.why else each.number)
+        for share in self.shares:
+            note = share.number if share.is_separated else f"not separable: {share.why}"
+            yield Row(share.name, share.share, "1", share.sigma, note)
 
 
 def loss_shares(loops: Sequence[Recording], gear: Gear) -> LossShares:

@@ -346,7 +346,7 @@ class Backlash(Wrapper):
             yield clearance, self.law.library(behind, half - 0.5 * clearance, gear)
 
 
-class Asymmetric(Wrapper):
+class TwoSided(Wrapper):
     """A spring of another kind whose torque has a factor in the negative sense of twist."""
 
     number = "negative_factor"
