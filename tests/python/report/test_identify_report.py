@@ -56,7 +56,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Identified:
     read, drawn, bare = recognise(path), (Picture(curves(), "table"),), (Picture(curves(sigma=False), "table"),)
     findings = (
         FileResult("warm.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), ("a remark of warm",), pictures=drawn),
-        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),), pictures=drawn),
+        FileResult("cold.csv", read, "a law", (told(COULOMB, 0.08, 0.002),)),
         FileResult("copy.csv", read, "a law", (told(COULOMB, 0.05, 0.001),), same_as="warm.csv", pictures=bare),
         FileResult(
             "loop.csv", read, "a spring",

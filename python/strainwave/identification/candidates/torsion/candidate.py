@@ -34,8 +34,8 @@ from strainwave.identification.candidates.torsion.springs import (
     LINEAR,
     THREE_SEGMENT,
     Answer,
-    TwoSided,
     SpringKind,
+    TwoSided,
     solve,
 )
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
