@@ -58,7 +58,12 @@ MAX_EVIDENCE_LAG = 40.0  # of the natural logarithm of the odds, by which the se
 MIN_ORDER_EVIDENCE = 4.0  # natural logarithm of the odds, from which an order counts for a line
 MIN_EVIDENCE_OF_MODE = 10.0  # natural logarithm of the odds of one line more
 MAX_MODES = 8
+MAX_ROUNDS = 4  # of adding and exchanging modes
+MIN_LEAD_OF_RIVAL = 2.0  # natural logarithm of the odds, from which a mode is exchanged
+MAX_FROM_WHOLE = 0.12  # of a slope, that counts as whole
+WHOLE_SLOPE_ODDS = 20.0  # of a slope of a whole number of waves to another one that fits as well (assumed)
 MIN_SLOPE_GAP = 0.5  # between the slopes of rivals
+MIN_SLOPE_OF_BOTH = 0.3  # from which both lines of a mode are separate
 MIN_SIGNIFICANCE = 4.0  # standard deviations of the coefficient of an order that a line acts on
 MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
 SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
@@ -68,12 +73,24 @@ STEPS_PER_STRETCH = 8.0  # of time, in the shortest stretch
 
 
 class Line(NamedTuple):
-    """A line of resonance: natural frequency at rest [rad/s], damping [1], slope over the speed [1], orders that it acts on."""
+    """A mode as lines of resonance over the speed.
+
+    Attributes:
+        frequency: of the shaft at rest [rad/s]
+        damping: as a share of the critical one [1]
+        slope: of its first line over the speed [1]; the second one has the opposite slope
+        acts_on: orders whose coefficient is not zero, of the first line and then of the second one
+    """
 
     frequency: float
     damping: float
     slope: float
     acts_on: tuple[bool, ...]
+
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """Orders that each of both lines acts on, shape (orders, 2)."""
+        return np.array(self.acts_on).reshape(2, -1).T
 
 
 @dataclass(frozen=True)
@@ -84,8 +101,8 @@ class Fitted:
         lines: of it
         evidence: natural logarithm of the probability of the amplitudes, up to a constant of the spectrum
         covariance: of the logarithms of frequency and damping and of the slope, one line after the other, (3 lines, 3 lines)
-        parts: coefficient of each order and line, shape (orders, lines)
-        parts_sigma: their standard deviation, shape (orders, lines)
+        parts: coefficients of each order, of both lines of each mode, shape (orders, lines, 2)
+        parts_sigma: their standard deviations, shape (orders, lines, 2)
         amplitude: of the model, shape (orders, stretches)
         noise: standard deviation of an amplitude of a stretch of mean length, shape (orders,)
         correlated: stretches over which the residual is correlated, shape (orders,)
@@ -201,28 +218,32 @@ class ModeProblem:
         return {}
 
     def answers(self, line: Line) -> Complex:
-        """Return the columns of a line, shape (orders, k, 1), or 2 of a sensor that stands."""
-        key = tuple(line[:3])
+        """Return the columns of both lines of a mode, or receptance and mobility of a sensor that stands, shape (orders, k, 2)."""
+        orders, acts = self.spectrum.orders, line.acts.any(axis=0)
+        if self.stands:
+            receptance = self._answers_at(line, 0.0)
+            return np.stack([receptance, 1j * np.outer(orders, self.spectrum.speed) / line.frequency * receptance], axis=2)
+        parts = [self._answers_at(line, slope) for slope, any_of in zip((line.slope, -line.slope), acts, strict=True) if any_of]
+        none = np.zeros((len(orders), len(self.spectrum.speed)), complex)
+        return np.stack([parts.pop(0) if any_of else none for any_of in acts], axis=2)
+
+    def _answers_at(self, line: Line, slope: float) -> Complex:
+        key = line.frequency, line.damping, slope
         if key not in self._kept:
             if len(self._kept) >= MAX_KEPT_ANSWERS:
                 self._kept.clear()
                 self._forces.clear()
-            orders = self.spectrum.orders
-            receptance = self._answers((orders - line.slope).tolist(), line.frequency, line.damping)[..., None]
-            if self.stands:
-                ratio = np.outer(orders, self.spectrum.speed)[..., None] / line.frequency
-                receptance = np.concatenate([receptance, 1j * ratio * receptance], axis=2)
-            self._kept[key] = receptance
+            self._kept[key] = self._answers((self.spectrum.orders - slope).tolist(), line.frequency, line.damping)
         return self._kept[key]
 
     def _columns(self, lines: Sequence[Line]) -> tuple[Complex, Array]:
         """Return all weighted columns with their prior standard deviations, shapes (orders, k, c) and (orders, c)."""
         columns, priors = [self.base], [np.full((len(self.scale), 2), BASE_PRIOR) * self._mean_size[:, None]]
         for line in lines:
-            answer, acts = self.answers(line), np.array(line.acts_on)
+            answer = self.answers(line)
             columns.append(answer)
-            size = np.stack([self._size(answer[..., part]) for part in range(answer.shape[2])], axis=1)
-            priors.append(np.where(acts[:, None], self.scale[:, None] / size, 0.0))
+            size = np.stack([self._size(answer[..., part]) for part in range(2)], axis=1)
+            priors.append(np.where(line.acts, self.scale[:, None] / size, 0.0))
         stacked = np.concatenate(columns, axis=2) * self.weight[..., None]
         return stacked, np.concatenate(priors, axis=1)
 
@@ -254,15 +275,15 @@ class ModeProblem:
     def fit(self, lines: Sequence[Line], noise: Array, correlated: Array, free: Sequence[int] | None = None) -> Fitted:
         """Return the fit of lines from first values, for a noise of the amplitudes; only some lines are searched if `free`."""
         lines = self._searched(tuple(lines), noise, correlated, range(len(lines)) if free is None else free) if lines else ()
-        columns, prior, values, covariance, left = self._projected(lines, noise)
+        _, prior, values, covariance, left = self._projected(lines, noise)
         spread = np.zeros((0, 0))
         if lines and free is None:
             jacobian = self._jacobian(lines, noise, correlated)
             spread = np.linalg.pinv(jacobian.T @ jacobian)
-        width = 2 if self.stands else 1
-        parts = values[:, 2::width]
-        variance = np.einsum("qcc->qc", covariance).real[:, 2::width]
-        sigma = (noise * np.sqrt(correlated))[:, None] * np.sqrt(np.maximum(variance, 0.0))
+        shape = (len(self.scale), len(lines), 2)
+        parts = values[:, 2:].reshape(shape)
+        variance = np.einsum("qcc->qc", covariance).real[:, 2:].reshape(shape)
+        sigma = (noise * np.sqrt(correlated))[:, None, None] * np.sqrt(np.maximum(variance, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
             amplitude = np.where(self.weight > 0.0, self.measured - left / self.weight, complex("nan"))
         freedom = np.maximum(self.count - 2.0 - (prior[:, 2:] > 0.0).sum(axis=1), 1.0)
@@ -326,7 +347,8 @@ class ModeProblem:
 
     def _reference(self, line: Line) -> float:
         """Return the order whose peak stands for the frequency of a line: of those that it acts on, one far from its slope."""
-        orders = self.spectrum.orders[list(line.acts_on)] if any(line.acts_on) else self.spectrum.orders
+        own = line.acts[:, 0]
+        orders = self.spectrum.orders[own] if own.any() else self.spectrum.orders
         return float(orders[int(np.argmin(np.abs(np.abs(orders - line.slope) - 3.0)))])
 
     def _values(self, lines: Sequence[Line], reference: Sequence[float]) -> Array:
@@ -403,6 +425,7 @@ class ModeProblem:
             step = SEARCH_STEP_SHARE * damping
             frequency = np.exp(np.arange(least, most, step))
             receptances: dict[float, tuple[slice, Complex]] = {}
+            by_slope: dict[int, Array] = {}
             for slope in slopes:
                 gains = np.zeros((len(orders), len(frequency)))
                 for q, order in enumerate(orders.tolist()):
@@ -417,18 +440,20 @@ class ModeProblem:
                     part = part if order > slope else part.conj()
                     weight, independent = self.weight[q, ::every], self.count[q] / correlated[q]
                     gains[q, met] = _gain(part * weight, bases[q], targets[q], float(noise[q]), independent)
-                acts = gains > MIN_ORDER_EVIDENCE
-                total = np.where(acts, gains, 0.0).sum(axis=0)
-                peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
-                found += [
-                    (float(total[k]), Line(float(frequency[k]), damping, float(slope), tuple(acts[:, k].tolist())))
-                    for k in peaks
-                    if total[k] > 0.0
-                ]
+                by_slope[slope] = np.where(gains > MIN_ORDER_EVIDENCE, gains, 0.0)
+            for slope, own in by_slope.items():
+                opposite = by_slope[-slope] if slope else np.zeros(own.shape)
+                for second in (np.zeros(own.shape), opposite) if slope > 0 else (np.zeros(own.shape),):
+                    total = own.sum(axis=0) + second.sum(axis=0)
+                    peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
+                    for k in peaks[total[peaks] > 0.0].tolist():
+                        acts = (*(own[:, k] > 0.0).tolist(), *((own if self.stands else second)[:, k] > 0.0).tolist())
+                        found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts)))
         found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
         kept: list[tuple[float, Line]] = []
         for gain, line in found:
-            if not any(m.slope == line.slope and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
+            slope = abs(line.slope)
+            if not any(abs(m.slope) == slope and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
                 kept.append((gain, line))
         return kept
 
@@ -467,14 +492,22 @@ def _later(times: _Times, force: Complex, rate: Complex, natural: float, damping
 
     pole = natural * (-damping + 1j * np.sqrt(1.0 - damping**2))
     residue = natural**2 / (2j * natural * np.sqrt(1.0 - damping**2))
+    # the pole on the side of the force is integrated; the other one is far from it, and answers at once
+    ahead = (rate.imag.mean(axis=1) >= 0.0)[:, None]
     answer = np.zeros(force.shape, complex)
-    for of_pole, of_residue in ((pole, residue), (pole.conjugate(), residue.conjugate())):
-        decay = np.exp(of_pole * times.step)
-        steady = of_residue * force[:, :-1] / (rate - of_pole)
-        driven = force[:, 1:] * steady / force[:, :-1] - decay * steady
-        moved, _ = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * steady[:, :1])
-        answer[:, :1] += steady[:, :1]
-        answer[:, 1:] += moved
+    for of_pole, of_residue, resonant in ((pole, residue, ahead), (pole.conjugate(), residue.conjugate(), ~ahead)):
+        rows, others = np.flatnonzero(resonant[:, 0]), np.flatnonzero(~resonant[:, 0])
+        if len(rows):
+            decay = np.exp(of_pole * times.step)
+            steady = of_residue * force[rows, :-1] / (rate[rows] - of_pole)
+            driven = force[rows, 1:] * steady / force[rows, :-1] - decay * steady
+            moved, _ = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * steady[:, :1])
+            answer[rows, :1] += steady[:, :1]
+            answer[rows, 1:] += moved
+        if len(others):
+            at_once = of_residue / (rate[others] - of_pole)
+            answer[others, :1] += at_once[:, :1] * force[others, :1]
+            answer[others, 1:] += at_once * force[others, 1:]
     framed = answer * force.conj()
     sums = np.zeros(framed.shape, complex)
     np.cumsum(0.5 * (framed[:, 1:] + framed[:, :-1]), axis=1, out=sums[:, 1:])
@@ -501,10 +534,33 @@ class Selected:
 
 
 def selected(problem: ModeProblem) -> Selected:
-    """Return the lines whose evidence is sufficient, one after the other, and their rivals."""
-    count = len(problem.scale)
-    noise, white = problem.scale, np.ones(count)
-    best = problem.fit((), noise, white)
+    """Return the modes whose evidence is sufficient: added one after the other, then each exchanged for a better one."""
+    best = problem.fit((), problem.scale, np.ones(len(problem.scale)))
+    others: tuple[tuple[tuple[float, Line], ...], ...] = ()
+    for _ in range(MAX_ROUNDS):
+        best = _added(problem, best)
+        exchanged = False
+        rivals = []
+        for place in range(len(best.lines)):
+            others_of = _others(problem, best, place)
+            lag, line = min(others_of, default=(0.0, None), key=lambda each: each[0])
+            if line is not None and lag < -MIN_LEAD_OF_RIVAL:
+                lines = (*best.lines[:place], line, *best.lines[place + 1 :])
+                best = _pruned(problem, problem.fit(lines, _noise(best, problem), best.correlated))
+                exchanged = True
+                break
+            rivals.append(others_of)
+        others = tuple(rivals)
+        if not exchanged:
+            break
+    if len(others) < len(best.lines):
+        others = tuple(_others(problem, best, place) for place in range(len(best.lines)))
+    return Selected(best, others)
+
+
+def _added(problem: ModeProblem, best: Fitted) -> Fitted:
+    """Return a fit with further modes, as long as each makes the amplitudes sufficiently more probable."""
+    white = np.ones(len(problem.scale))
     while len(best.lines) < MAX_MODES:
         noise = _noise(best, problem)
         proposed = problem.starts(best.lines, noise, white)
@@ -513,19 +569,24 @@ def selected(problem: ModeProblem) -> Selected:
             if gain < proposed[0][0] - MAX_EVIDENCE_LAG:
                 break
             trial = problem.fit((*best.lines, line), noise, white, own)
-            tried.append(problem.fit(_acting(trial), _noise(trial, problem), trial.correlated, own))
+            tried.append(problem.fit(trial.lines, _noise(trial, problem), trial.correlated, own))
         if not tried:
             break
         least = min(tried, key=lambda each: float(np.sum(np.log(each.noise) * problem.count)))
         noise = _noise(least, problem)
         same = [problem.fit(each.lines, noise, least.correlated, own) for each in tried]
         before = problem.fit(best.lines, noise, least.correlated)
-        winner = _pruned(problem, max(same, key=lambda each: each.evidence))
+        winner = _pruned(problem, max(same, key=lambda each: each.evidence + _prior(each.lines[-1])))
         winner = problem.fit(winner.lines, noise, least.correlated)
         if winner.evidence - before.evidence < MIN_EVIDENCE_OF_MODE:
             break
         best = winner
-    return Selected(best, tuple(_others(problem, best, place) for place in range(len(best.lines))))
+    return best
+
+
+def _prior(line: Line) -> float:
+    """Return the logarithm of how probable a slope is: modes that travel freely, or not at all, have whole ones."""
+    return 0.0 if abs(line.slope - round(line.slope)) < MAX_FROM_WHOLE else -log(WHOLE_SLOPE_ODDS)
 
 
 def _noise(fit: Fitted, problem: ModeProblem) -> Array:
@@ -533,18 +594,46 @@ def _noise(fit: Fitted, problem: ModeProblem) -> Array:
 
 
 def _acting(fit: Fitted) -> tuple[Line, ...]:
-    """Return the lines, each with the orders whose coefficient is significant."""
-    acts = np.abs(fit.parts) > MIN_SIGNIFICANCE * fit.parts_sigma
-    return tuple(
-        line._replace(acts_on=tuple((acts[:, k] & np.array(line.acts_on)).tolist())) for k, line in enumerate(fit.lines)
-    )
+    """Return the modes, each with the orders whose coefficients are significant, the line with more of them first."""
+    acting = []
+    for k, line in enumerate(fit.lines):
+        acts = (np.abs(fit.parts[:, k]) > MIN_SIGNIFICANCE * fit.parts_sigma[:, k]) & line.acts
+        if acts[:, 1].sum() > acts[:, 0].sum():
+            acts, line = acts[:, ::-1], line._replace(slope=-line.slope)
+        acting.append(line._replace(acts_on=tuple(acts.T.ravel().tolist())))
+    return tuple(acting)
 
 
 def _pruned(problem: ModeProblem, fit: Fitted) -> Fitted:
-    """Return the fit in which each line acts on the orders whose coefficient is significant, of all of them."""
-    everywhere = tuple(line._replace(acts_on=(True,) * len(problem.scale)) for line in fit.lines)
-    lines = _acting(problem.fit(everywhere, _noise(fit, problem), fit.correlated, ()))
-    return problem.fit(lines, _noise(fit, problem), fit.correlated)
+    """Return the fit in which each mode acts on the orders whose coefficients are significant, of all of them.
+
+    Two lines that begin near one frequency, with opposite slopes, are tried as one mode and as two.
+    """
+    single = list[Line]()
+    for line in fit.lines:
+        if not any(_same_mode(line, other) for other in single):
+            single.append(line)
+    pruned = [_acting_anywhere(problem, fit, lines) for lines in {tuple(single): None, fit.lines: None}]
+    return max(pruned, key=lambda each: problem.fit(each.lines, _noise(pruned[-1], problem), fit.correlated).evidence)
+
+
+def _acting_anywhere(problem: ModeProblem, fit: Fitted, lines: Sequence[Line]) -> Fitted:
+    count, everywhere = len(problem.scale), []
+    for line in lines:
+        alone = not any(_same_mode(line, other) for other in lines if other is not line)
+        both = problem.stands or (alone and abs(line.slope) > MIN_SLOPE_OF_BOTH)
+        everywhere.append(line._replace(acts_on=(True,) * count + (both,) * count))
+    trial = problem.fit(everywhere, _noise(fit, problem), fit.correlated, ())
+    acting = tuple(line for line in _acting(trial) if any(line.acts_on))
+    if problem.stands:
+        acting = tuple(line._replace(acts_on=2 * tuple(line.acts.any(axis=1).tolist())) for line in acting)
+    return problem.fit(acting, _noise(fit, problem), fit.correlated)
+
+
+def _same_mode(one: Line, other: Line) -> bool:
+    """Return True if two lines begin at one frequency and have the same or opposite slopes."""
+    tilt = abs(abs(one.slope) - abs(other.slope))
+    return abs(log(one.frequency / other.frequency)) < SAME_START and tilt < MIN_SLOPE_OF_BOTH
 
 
 def _others(problem: ModeProblem, best: Fitted, place: int) -> tuple[tuple[float, Line], ...]:
@@ -558,9 +647,9 @@ def _others(problem: ModeProblem, best: Fitted, place: int) -> tuple[tuple[float
         if gain < lead - MAX_EVIDENCE_LAG or len(fits) >= MAX_STARTS:
             break
         slopes = [own.slope, *(fit.lines[place].slope for fit in fits)]
-        if min(abs(line.slope - slope) for slope in slopes) > MIN_SLOPE_GAP:
+        if min(abs(abs(line.slope) - abs(slope)) for slope in slopes) > MIN_SLOPE_GAP:
             lines = [*best.lines[:place], line, *best.lines[place + 1 :]]
             fits.append(problem.fit(lines, noise, best.correlated, [place]))
-    least = problem.fit(best.lines, noise, best.correlated, ()).evidence
-    rivals = [(least - fit.evidence, fit.lines[place]) for fit in fits]
-    return tuple(rival for rival in rivals if abs(rival[1].slope - own.slope) > MIN_SLOPE_GAP)
+    least = problem.fit(best.lines, noise, best.correlated, ()).evidence + _prior(own)
+    rivals = [(least - fit.evidence - _prior(fit.lines[place]), fit.lines[place]) for fit in fits]
+    return tuple(rival for rival in rivals if abs(abs(rival[1].slope) - abs(own.slope)) > MIN_SLOPE_GAP)

@@ -36,6 +36,7 @@ MIN_STRETCHES_OF_RECORDING = 4  # of a recording at constant speed, as its noise
 TREND_POWERS = 3  # of the angle in a stretch: constant, rate, and a change of the rate
 MAX_WAVE_STEP = 0.8 * np.pi  # rad of an order between samples
 MAX_FOLLOWED = 10  # orders, the strongest ones
+MIN_ORDER = 0.3  # of the shaft: slower ones are drifts
 MAX_LOOKED_FOR = 64  # order, up to which a spectrum is searched if none are named
 MAX_SEARCHED_STEP = 0.4 * np.pi  # rad of an order between samples, as the spectrum interpolates
 SEGMENT_TURNS = 32.0  # of a segment of the spectrum over the angle: resolves orders to 1/16
@@ -265,7 +266,7 @@ def _lines(order: Array, excess: Array, turns: float, whole: Turning) -> list[Or
     found: list[OrderLine] = []
     for k in sorted(peaks.tolist(), key=lambda k: -mean[k]):
         near = float(order[k])
-        if any(abs(near - other.order) < 2.5 / turns for other in found):
+        if near < MIN_ORDER or any(abs(near - other.order) < 2.5 / turns for other in found):
             continue
         if round(near) and abs(near - round(near)) <= MAX_FROM_WHOLE * SEGMENT_TURNS / turns:
             found.append(OrderLine(float(round(near)), 0.0, float(mean[k])))

@@ -42,7 +42,6 @@ PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must p
 MIN_STRETCHES_IN_PEAK = 3  # within that reach
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
-WHOLE_WAVES_ODDS = 20.0  # of a slope of a whole number of waves to another one that fits as well (assumed)
 MAX_CANDIDATE_WAVES = 6
 MAX_DAMPING_SIGMA = 0.5  # of the damping, over which it is not stated
 SAME_MODE_SIGMA = 3.0  # standard deviations between the frequencies of both lines of a mode
@@ -244,8 +243,13 @@ class _Passing:
 
     line: Line
     sigma: Array
-    orders: tuple[float, ...]
+    peaks: tuple[tuple[float, float], ...]
     rivals: tuple[Line, ...]
+
+    @property
+    def orders(self) -> tuple[float, ...]:
+        """Orders that pass it."""
+        return tuple(sorted({order for order, _ in self.peaks}))
 
 
 def _stated(
@@ -254,42 +258,26 @@ def _stated(
     """Return the modes of lines that orders pass, and remarks on those that they do not pass."""
     passings, remarks, beyond = list[_Passing](), list[str](), set[float]()
     for place, line in enumerate(fit.lines):
-        orders = [q for q, acts in zip(problem.spectrum.orders.tolist(), line.acts_on, strict=True) if acts]
-        passed = [q for q in orders if _passes(problem.spectrum.speed, _peak(line, q), line.damping)]
+        met = [(q, _peak(line, q, of)) for of in (0, 1) for q in problem.spectrum.orders[line.acts[:, of]].tolist()]
+        passed = tuple((q, peak) for q, peak in met if _passes(problem.spectrum.speed, peak, line.damping))
         if passed:
             sigma = np.sqrt(np.diag(fit.covariance)[3 * place : 3 * place + 3])
-            near = tuple(rival for lag, rival in others[place] if lag < np.log(MAX_ODDS * _odds_of_slope(line, rival)))
-            passings.append(_Passing(line, sigma, tuple(passed), near))
+            near = tuple(rival for lag, rival in others[place] if lag < np.log(MAX_ODDS))
+            passings.append(_Passing(line, sigma, passed, near))
         else:
-            beyond.update(orders)
+            beyond.update(q for q, _ in met)
     if beyond:
         remarks.append(
             f"order{'s' * (len(beyond) > 1)} {listed([number(q, 5) for q in sorted(beyond)])} may come near a peak that is not passed "
             "from below to above: no mode is stated by it; run further"
         )
-    taken: set[int] = set()
-    modes = []
-    for place, passing in enumerate(passings):
-        if place in taken:
-            continue
-        twin = next((k for k in range(place + 1, len(passings)) if k not in taken and _twins(passing, passings[k])), None)
-        if twin is not None:
-            taken.add(twin)
-        modes.append(
-            _mode(problem, passing, passings if twin is None else [passings[twin]], None if twin is None else passings[twin])
-        )
+    modes = [_mode(problem, passing) for passing in passings]
     return tuple(sorted(modes, key=lambda mode: mode.candidates[0].natural_frequency)), remarks
 
 
-def _odds_of_slope(line: Line, rival: Line) -> float:
-    """Return by how much the slope of a line is more probable beforehand than that of its rival."""
-    own, other = (abs(each.slope - round(each.slope)) < 0.5 * MAX_FROM_WHOLE_WAVES for each in (line, rival))
-    return WHOLE_WAVES_ODDS ** (float(other) - float(own))
-
-
-def _peak(line: Line, order: float) -> float:
-    """Return the speed at which an order meets a line [rad/s]; infinite if it never does."""
-    gap = abs(order - line.slope)
+def _peak(line: Line, order: float, of: int) -> float:
+    """Return the speed at which an order meets the first or second line of a mode [rad/s]; infinite if it never does."""
+    gap = abs(order - (-line.slope if of else line.slope))
     return line.frequency / gap if gap > 0.0 else np.inf
 
 
@@ -304,18 +292,8 @@ def _passes(speed: Array, peak: float, damping: float) -> bool:
     )
 
 
-def _twins(one: _Passing, other: _Passing) -> bool:
-    """Return True if two lines are those of one mode: they begin at one frequency, and one rises as the other one falls."""
-    apart = abs(np.log(one.line.frequency / other.line.frequency))
-    sigma = np.hypot(*(max(float(each.sigma[0]), MIN_FREQUENCY_SIGMA) for each in (one, other)))
-    tilt = abs(one.line.slope + other.line.slope)
-    tilt_sigma = float(np.hypot(one.sigma[2], other.sigma[2])) + 0.05
-    return bool(apart < SAME_MODE_SIGMA * sigma and tilt < SAME_MODE_SIGMA * tilt_sigma and abs(one.line.slope) > 0.5)
-
-
-def _mode(problem: ModeProblem, passing: _Passing, others: Sequence[_Passing], twin: _Passing | None) -> RingMode:
+def _mode(problem: ModeProblem, passing: _Passing) -> RingMode:
     line, sigma = passing.line, passing.sigma
-    orders = sorted({*passing.orders, *(() if twin is None else twin.orders)})
     damping, spread = line.damping, float(np.hypot(sigma[1], MIN_DAMPING_SIGMA))
     if not spread < MAX_DAMPING_SIGMA:
         damping = nan
@@ -323,7 +301,7 @@ def _mode(problem: ModeProblem, passing: _Passing, others: Sequence[_Passing], t
     slope, slope_sigma = abs(line.slope), float(sigma[2])
     whole = round(slope)
     from_whole = abs(slope - whole) + 2.0 * slope_sigma
-    common = {"damping": damping, "damping_sigma": damping * spread, "orders": tuple(orders)}
+    common = {"damping": damping, "damping_sigma": damping * spread, "orders": passing.orders}
     if problem.stands:
         candidate = _candidate(problem, 0, line.frequency, line.frequency * frequency_sigma)
         why = "a sensor that stands sees each order at ω over its own order, whatever the waves: compare with an encoder"
@@ -337,7 +315,8 @@ def _mode(problem: ModeProblem, passing: _Passing, others: Sequence[_Passing], t
             whole, line.frequency, line.frequency * frequency_sigma, slope=slope, slope_sigma=slope_sigma,
             candidates=(candidate,), **common,
         )  # fmt: skip
-    if slope_sigma < 0.5 * MAX_FROM_WHOLE_WAVES and not passing.rivals:
+    candidates = _candidates(problem, passing)
+    if len(candidates) < 2:
         candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
         why = (
             f"its line changes by {uncertain(slope, slope_sigma)} of the speed, no whole number: the lobes hold it in part, or two modes "
@@ -347,7 +326,6 @@ def _mode(problem: ModeProblem, passing: _Passing, others: Sequence[_Passing], t
             None, line.frequency, line.frequency * frequency_sigma, slope=slope, slope_sigma=slope_sigma,
             candidates=(candidate,), separated_by=why, **common,
         )  # fmt: skip
-    candidates = _candidates(problem, passing, others)
     return RingMode(
         None, nan, nan, slope=slope, slope_sigma=slope_sigma, candidates=candidates,
         separated_by=_separated_by(problem, passing, candidates), **common,
@@ -362,30 +340,22 @@ def _candidate(problem: ModeProblem, waves: int, frequency: float, sigma: float)
     return ModeCandidate(waves, frequency, sigma, tuple(speeds))
 
 
-def _candidates(problem: ModeProblem, passing: _Passing, others: Sequence[_Passing]) -> tuple[ModeCandidate, ...]:
+def _candidates(problem: ModeProblem, passing: _Passing) -> tuple[ModeCandidate, ...]:
     """Return the numbers of waves that are left, each with the frequency at which the peak lies where it was measured."""
-    line, order = passing.line, passing.orders[0]
-    peak, spread = _peak(line, order), float(passing.sigma[2])
-    sigma = max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
-    speed = problem.spectrum.speed
-    left: dict[int, tuple[float, float]] = {}
-    slopes = [float(n) for n in range(-MAX_CANDIDATE_WAVES, MAX_CANDIDATE_WAVES + 1)]
+    line, (order, peak) = passing.line, passing.peaks[0]
+    spread, sigma = float(passing.sigma[2]), max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
     near = [rival.slope for rival in passing.rivals]
-    for slope in sorted(slopes, key=lambda each: abs(each)):
+    left: dict[int, tuple[float, float]] = {}
+    for slope in sorted(range(-MAX_CANDIDATE_WAVES, MAX_CANDIDATE_WAVES + 1), key=abs):
         lag = min([abs(slope - line.slope) / max(spread, 0.05), *(abs(slope - each) / 0.15 for each in near)])
         gap = abs(order - slope)
         if lag > np.sqrt(2.0 * np.log(MAX_ODDS)) or gap < 0.5:
             continue
         frequency = gap * peak
-        partner = frequency / abs(order + slope) if abs(order + slope) > 0.0 else np.inf
-        unseen = slope != 0.0 and _passes(speed, partner, line.damping)
-        unseen = unseen and not any(
-            order in each.orders and abs(_peak(each.line, order) / partner - 1.0) < 3.0 * line.damping for each in others
-        )
-        if not unseen:
-            left.setdefault(int(abs(slope)), (frequency, frequency * sigma))
-    if not left:
-        left[round(abs(line.slope))] = (line.frequency, line.frequency * sigma)
+        other = frequency / abs(order + slope) if abs(order + slope) > 0.0 else np.inf
+        seen = any(q == order and abs(at / other - 1.0) < 3.0 * line.damping for q, at in passing.peaks)
+        if slope == 0 or seen or not _passes(problem.spectrum.speed, other, line.damping):
+            left.setdefault(abs(slope), (frequency, frequency * sigma))
     return tuple(_candidate(problem, waves, *of) for waves, of in left.items())
 
 
