@@ -27,6 +27,7 @@ from strainwave.orders.orders_over_speed import (
     uneven_orders,
     whole_orders,
 )
+from strainwave.orders.turning import reach_of, smooth_speed
 from strainwave.presentation import Pictured, Row
 from strainwave.typeset import number, uncertain
 
@@ -39,6 +40,8 @@ Complex = NDArray[np.complex128]
 STANDING_COLUMNS = ("vibration", "acceleration")  # of sensors that do not go round with the lobes
 MIN_STRETCHES = 12  # amplitudes of an order, for a peak of three unknowns and what passes by
 MIN_SPEED_RATIO = 1.3  # of the fastest to the slowest speed, from which orders pass a range of frequencies
+MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
+MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must pass
 MIN_STRETCHES_IN_PEAK = 3  # within that reach
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
@@ -228,6 +231,19 @@ def ring_modes(
     )
 
 
+def passes_frequencies(recordings: Sequence[Recording], angle: str) -> bool:
+    """Return True if the shaft turns one way, far enough and at speeds that differ enough, for orders to pass a mode."""
+    turns, speeds = 0.0, list[float]()
+    for recording in recordings:
+        turned, time = np.unwrap(recording.values(angle, "rad")), recording.time
+        speed = smooth_speed(turned, reach_of(len(turned))) / max(float(np.median(np.diff(time))), 1e-300)
+        if np.mean(np.sign(speed) == np.sign(speed[len(speed) // 2])) < MIN_ONE_WAY_SHARE:
+            return False
+        turns += float(np.ptp(turned)) / tau
+        speeds += [float(each) for each in np.quantile(np.abs(speed), [0.05, 0.95])]
+    return turns > MIN_TURNS_IN_ALL and max(speeds) > MIN_SPEED_RATIO * max(min(speeds), 1e-300)
+
+
 def _too_little(spectrum: OrdersOverSpeed) -> str:
     """Return why amplitudes over the speed determine no mode; empty if they may."""
     if not len(spectrum.orders):
@@ -410,26 +426,26 @@ def modes_figure(modes: RingModes) -> Figure:
     """Return the figure of a `RingModes`, as its `plot` describes it."""
     if not modes.orders:
         raise ValueError("no order was followed")
-    size = np.nanmax(np.abs(modes.amplitude), axis=1)
-    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
-    place = np.argsort(modes.speed, kind="stable")
-    with marks.new_figure(0.8 + FIGURE_HEIGHT * len(drawn), "Orders over the speed") as figure:
-        panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-        rpm = modes.speed[place] * 30.0 / np.pi
-        for axes, k in zip(panels, drawn, strict=True):
-            axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
-            marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="modes")
-            label = "critical speed"
-            for mode in modes.modes:
-                for order, speed in mode.candidates[0].critical_speeds:
-                    if order == modes.orders[k] and rpm[0] < speed * 30.0 / np.pi < rpm[-1]:
-                        axes.axvline(speed * 30.0 / np.pi, color=LIGHT["muted"], linestyle="--", linewidth=0.8, label=label)
-                        label = ""
-            axes.set_ylim(bottom=0.0)
-            marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
-        marks.label_abscissa(panels[-1], "speed [1/min]", "1")
-        marks.legend(figure, panels[0])
+    with marks.new_figure(0.8 + FIGURE_HEIGHT * min(len(modes.orders), MAX_DRAWN_ORDERS), "Orders over the speed") as figure:
+        draw_modes(figure, modes)
     return figure
 
 
-__all__ = ["ModeCandidate", "RingMode", "RingModes", "Turning", "ring_modes", "words_of"]
+def draw_modes(figure: Figure, modes: RingModes) -> None:
+    """Draw the amplitude of each order over the speed, with the model and the critical speeds."""
+    size = np.nanmax(np.abs(modes.amplitude), axis=1)
+    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
+    place = np.argsort(modes.speed, kind="stable")
+    rpm = modes.speed[place] * 30.0 / np.pi
+    panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, k in zip(panels, drawn, strict=True):
+        axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
+        marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="model")
+        critical = [speed * 30.0 / np.pi for mode in modes.modes for order, speed in mode.candidates[0].critical_speeds if order == modes.orders[k]]
+        for speed in critical:
+            if rpm[0] < speed < rpm[-1]:
+                axes.axvline(speed, color=LIGHT["muted"], linestyle="--", linewidth=0.8)
+        axes.set_ylim(bottom=0.0)
+        marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
+    marks.label_abscissa(panels[-1], "speed [1/min]", "1")
+    marks.legend(figure, panels[0])
