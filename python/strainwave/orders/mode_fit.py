@@ -367,12 +367,10 @@ class ModeProblem:
         _, size = np.linalg.slogdet(np.eye(normal.shape[1]) + normal)
         occam = 0.0
         if len(spread):
-            ranges = [
-                log(self.speeds[1] / self.speeds[0]),
-                log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0]),
-                SLOPE_PRIOR * np.sqrt(tau),
-            ]
-            share = np.sqrt(tau * np.maximum(np.diag(spread), 1e-300)) / np.tile(ranges, len(lines))
+            usual = [log(self.speeds[1] / self.speeds[0]), log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0])]
+            slopes = [WHOLE_SLOPE_SIGMA if line.whole else SLOPE_PRIOR for line in lines]
+            ranges = [[*usual, *([] if self.stands else [slope * np.sqrt(tau)])] for slope in slopes]
+            share = np.sqrt(tau * np.maximum(np.diag(spread), 1e-300)) / np.concatenate(ranges)
             occam = float(np.sum(np.log(np.minimum(share, 1.0))))
         return float(np.sum(fitted - size)) + occam
 
