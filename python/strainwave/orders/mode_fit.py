@@ -68,13 +68,11 @@ MIN_DECREASE = 0.02  # of the logarithm of the noise of all orders
 PEAK_WIDTHS = 4.0  # half widths from a peak, within which another one only corrects its shape
 MAX_ROUNDS = 4  # of adding and exchanging modes
 MIN_LEAD_OF_RIVAL = 2.0  # natural logarithm of the odds, from which a mode is exchanged
-MAX_SNAPPED = 0.3  # of a slope to a whole one, that is tried
 WHOLE_SLOPE_SIGMA = 0.01  # of a whole slope: rings are pressed a little out of round (assumed)
-MAX_FROM_WHOLE = 0.12  # of a slope, that counts as whole
 WHOLE_SLOPE_ODDS = 20.0  # of a slope of a whole number of waves to another one that fits as well (assumed)
 MIN_SLOPE_GAP = 0.5  # between the slopes of rivals
 MIN_SLOPE_OF_BOTH = 0.3  # from which both lines of a mode are separate
-MIN_SIGNIFICANCE = 4.0  # standard deviations of the coefficient of an order that a line acts on
+MIN_SIGNIFICANCE = 5.0  # standard deviations of the coefficient of an order that a line acts on
 MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
 SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
 MIN_CHANGE = 0.02  # of a receptance over its static one, along the speeds: less is that of what passes by
@@ -513,7 +511,7 @@ class ModeProblem:
                     peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
                     for k in peaks[total[peaks] > 0.0].tolist():
                         acts = (*(own[:, k] > 0.0).tolist(), *(second[:, k] > 0.0).tolist())
-                        found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts)))
+                        found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts, whole=True)))
         found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
         kept: list[tuple[float, Line]] = []
         for gain, line in found[:MAX_PROPOSED]:
@@ -636,7 +634,10 @@ def selected(problem: ModeProblem) -> Selected:
             break
     if len(others) < len(best.lines):
         others = tuple(_others(problem, best, place) for place in range(len(best.lines)))
-    return Selected(_with_whole_slopes(problem, best), others)
+    freed = _freed(problem, best)
+    if len(freed.lines) > len(others):
+        others = tuple(_others(problem, freed, place) for place in range(len(freed.lines)))
+    return Selected(freed, others)
 
 
 def _added(problem: ModeProblem, best: Fitted) -> Fitted:
@@ -658,7 +659,7 @@ def _added(problem: ModeProblem, best: Fitted) -> Fitted:
         least = min(tried, key=lambda each: float(np.sum(np.log(each.noise) * problem.count)))
         noise = _noise(least, problem)
         same = [problem.fit(each.lines, noise, least.correlated, own) for each in tried]
-        winner = _pruned(problem, max(same, key=lambda each: each.evidence + _prior(each.lines[-1])))
+        winner = _pruned(problem, max(same, key=lambda each: each.evidence))
         winner = _settled(problem, winner)
         if len(winner.lines) <= len(best.lines) or any(_corrects(problem, *each) for each in _each_beside(winner.lines)):
             break
@@ -709,21 +710,25 @@ def _slope_cost(line: Line) -> float:
     return (line.slope - round(line.slope)) / WHOLE_SLOPE_SIGMA if line.whole else line.slope / SLOPE_PRIOR
 
 
-def _with_whole_slopes(problem: ModeProblem, best: Fitted) -> Fitted:
-    """Return the fit in which slopes are those of whole numbers of waves, as far as that is as probable."""
+def _freed(problem: ModeProblem, best: Fitted) -> Fitted:
+    """Return the fit in which slopes that are not whole, and pairs of lines that do not begin at one frequency, are free."""
     for place, line in enumerate(best.lines):
-        if problem.stands or abs(line.slope - round(line.slope)) > MAX_SNAPPED:
+        if problem.stands:
             continue
-        lines = (*best.lines[:place], line._replace(whole=True), *best.lines[place + 1 :])
-        snapped = problem.fit(lines, _noise(best, problem), best.correlated)
-        free = problem.fit(best.lines, _noise(best, problem), best.correlated)
-        best = snapped if snapped.evidence + log(WHOLE_SLOPE_ODDS) > free.evidence else free
+        before, after = best.lines[:place], best.lines[place + 1 :]
+        rivals = [(*before, line._replace(whole=False), *after)]
+        first, second = line.acts.T
+        if first.any() and second.any():
+            none = (False,) * len(first)
+            pair = (line._replace(acts_on=(*first.tolist(), *none)), line._replace(slope=-line.slope, acts_on=(*second.tolist(), *none)))
+            rivals.append((*before, pair[0], *after, pair[1]))
+        for lines in rivals:
+            noise = _noise(best, problem)
+            own, other = (problem.fit(each, noise, best.correlated) for each in (best.lines, lines))
+            if other.evidence > own.evidence + log(WHOLE_SLOPE_ODDS):
+                best = other
+                break
     return best
-
-
-def _prior(line: Line) -> float:
-    """Return the logarithm of how probable a slope is: modes that travel freely, or not at all, have whole ones."""
-    return 0.0 if abs(line.slope - round(line.slope)) < MAX_FROM_WHOLE else -log(WHOLE_SLOPE_ODDS)
 
 
 def _noise(fit: Fitted, problem: ModeProblem) -> Array:
@@ -787,6 +792,6 @@ def _others(problem: ModeProblem, best: Fitted, place: int) -> tuple[tuple[float
         if min(abs(abs(line.slope) - abs(slope)) for slope in slopes) > MIN_SLOPE_GAP:
             lines = [*best.lines[:place], line, *best.lines[place + 1 :]]
             fits.append(problem.fit(lines, noise, best.correlated, [place]))
-    least = problem.fit(best.lines, noise, best.correlated, ()).evidence + _prior(own)
-    rivals = [(least - fit.evidence - _prior(fit.lines[place]), fit.lines[place]) for fit in fits]
+    least = problem.fit(best.lines, noise, best.correlated, ()).evidence
+    rivals = [(least - fit.evidence, fit.lines[place]) for fit in fits]
     return tuple(rival for rival in rivals if abs(abs(rival[1].slope) - abs(own.slope)) > MIN_SLOPE_GAP)

@@ -44,7 +44,7 @@ MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
 MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must pass
 MIN_STRETCHES_IN_PEAK = 4  # within that reach, of all orders that pass the mode
-MIN_SIGNIFICANCE_OF_ONE = 12.0  # standard deviations of the coefficient, if one order alone passes a mode
+MIN_SIGNIFICANCE_OF_ORDER = 10.0  # standard deviations of a coefficient, from which an order counts as passing a mode
 MAX_SLOPE_SIGMA = 0.3  # of a slope that is no whole one, for a frequency
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
@@ -285,8 +285,9 @@ def _stated(
         speed = problem.spectrum.speed
         passed = tuple((q, peak) for q, peak in met if _passes(speed, peak, line.damping))
         within = sum(_within(speed, peak, line.damping) for _, peak in passed)
-        sure = len({q for q, _ in passed}) > 1 or _largest(problem, fit, place) > MIN_SIGNIFICANCE_OF_ONE
-        if within < MIN_STRETCHES_IN_PEAK or not sure:
+        strong = _strong(problem, fit, place)
+        passed = tuple((q, peak) for q, peak in passed if q in strong)
+        if within < MIN_STRETCHES_IN_PEAK or not passed:
             beyond.update(q for q, _ in met)
             continue
         sigma = np.sqrt(np.diag(fit.covariance)[3 * place : 3 * place + 3])
@@ -326,10 +327,11 @@ def _within(speed: Array, peak: float, damping: float) -> int:
     return int((np.abs(speed / peak - 1.0) < PASSED_WIDTHS * damping).sum())
 
 
-def _largest(problem: ModeProblem, fit: Fitted, place: int) -> float:
-    """Return the largest coefficient of a mode over its standard deviation."""
+def _strong(problem: ModeProblem, fit: Fitted, place: int) -> set[float]:
+    """Return the orders with a coefficient of a mode that is significant by itself."""
     acts = fit.lines[place].acts
-    return float((np.abs(fit.parts[:, place])[acts] / fit.parts_sigma[:, place][acts]).max(initial=0.0))
+    size = np.where(acts, np.abs(fit.parts[:, place]) / np.maximum(fit.parts_sigma[:, place], 1e-300), 0.0)
+    return set(problem.spectrum.orders[(size > MIN_SIGNIFICANCE_OF_ORDER).any(axis=1)].tolist())
 
 
 def _mode(problem: ModeProblem, passing: _Passing) -> RingMode | None:
