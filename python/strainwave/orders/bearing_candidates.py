@@ -1,13 +1,14 @@
 r"""Ball counts and diameters of a bearing that explain orders of the wave generator's shaft.
 
-The inner ring of the bearing in a wave generator is the lobes. With :math:`\gamma = d \cos\alpha / D` and an outer ring that turns
-by r per revolution of the input, each ball passes
+The inner ring of the bearing in a wave generator is the lobes. With :math:`\gamma = d \cos\alpha / D` and an outer ring that
+turns by r per revolution of the input, each ball passes
 
 .. math:: p = \tfrac{1}{2} (1 + \gamma) (1 - r)
 
-times per revolution (RandallAntoni2011, eqs. (1) to (4)), and z balls pass a lobe z p times. Errors of lobes and teeth have whole
-orders and multiply what the balls do: orders of a bearing are h z p + m, with h = 1, 2, … and any whole m. So an order is known
-modulo 1 only. Balls that differ make every k p. A few orders within their resolution leave many bearings: all are listed.
+times per revolution (RandallAntoni2011, eqs. (1) to (4)), and z balls pass a lobe z p times. Errors of lobes and teeth have
+whole orders and multiply what the balls do: orders of a bearing are h z p + m, with h = 1, 2, … and any whole m. So an order
+is known modulo 1 only. Balls that differ make every k p. A few orders within their resolution leave many bearings: all are
+listed.
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ def _stretches(chosen: NDArray[np.bool_]) -> Iterator[slice]:
 def _candidate(balls: int, passes: Array, orders: Array, sigma: Array, outer: float) -> BearingCandidate:
     middle = float(0.5 * (passes[0] + passes[-1]))
     scale = 2.0 / (1.0 - outer)
-    spread = max(float(passes[-1] - passes[0]) / (2.0 * MAX_SIGMAS), float(sigma.min()) / (MAX_HARMONIC * balls))
+    spread = max(0.5 * float(passes[-1] - passes[0]), float(sigma.min()) / balls)
     causes = tuple(_causes(balls, middle, float(np.ptp(passes)), orders, sigma))
     return BearingCandidate(balls, scale * middle - 1.0, scale * spread, causes)
 
@@ -183,6 +184,6 @@ def _causes(balls: int, passes: float, reach: float, orders: Array, sigma: Array
 def _remarks(best: tuple[BearingCandidate, ...], balls: int | None) -> Iterator[str]:
     if best and balls is None:
         yield (
-            f"{len({each.balls for each in best})} counts of balls are not separable: count the balls, or record more revolutions, "
-            "as orders are resolved to one over their number"
+            f"{len({each.balls for each in best})} counts of balls are not separable: count the balls, or record more "
+            "revolutions, as orders are resolved to one over their number"
         )

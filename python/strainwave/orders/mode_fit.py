@@ -1,7 +1,8 @@
 r"""Fit of resonances to complex amplitudes of orders over the speed of a shaft, by variable projection.
 
-The wave generator of a strain wave gear presses on the ring at its lobes, at the angle θ. A mode of the ring with n waves, driven
-by a force F that goes round with the lobes, is a vector z in the plane of its two shapes, with the displacement u at the lobes
+The wave generator of a strain wave gear presses on the ring at its lobes, at the angle θ. A mode of the ring with n waves,
+driven by a force F that goes round with the lobes, is a vector z in the plane of its two shapes; u is its displacement at the
+lobes,
 
 .. math:: \ddot z + 2 \zeta \omega_0 \dot z + \omega_0^2 z = \omega_0^2 F e^{j n \theta}, \qquad
           u = \mathrm{Re} (z e^{-j n \theta}).
@@ -11,14 +12,14 @@ Of a force of order q, F = Re(f exp(j q θ)), the answer has order q as well, an
 .. math:: u = \mathrm{Re} \Bigl(\tfrac{f}{2} \bigl[H((q + n) \Omega) + H((q - n) \Omega)\bigr] e^{j q \theta}\Bigr), \qquad
           H(\omega) = \frac{1}{1 - (\omega / \omega_0)^2 + 2 j \zeta \omega / \omega_0}.
 
-In the frame of the lobes such a mode has two lines, ω0 + n Ω and ω0 - n Ω: order q is resonant where q Ω meets a line. A mode that
-does not travel (torsion, a housing, or a ring that the lobes hold firmly) has n = 0; a ring that they hold softly has slopes
-between. So the fit is of lines, with real slopes s:
+In the frame of the lobes such a mode has two lines, ω0 + n Ω and ω0 - n Ω: order q is resonant where q Ω meets a line. A mode
+that does not travel (torsion, a housing, or a ring that the lobes hold firmly) has n = 0; a ring that they hold softly has
+slopes between. So the fit is of lines, whose slopes s are whole if free ones are not more probable:
 
 .. math:: X_q(\Omega) = b_q + c_q \Omega^2 + \sum_k g_{qk} H_k((q - s_k) \Omega).
 
-Of one order the peak at Ωp determines (q - s) Ωp = ω0 alone, of two orders s and ω0. Of a sensor that stands on the ring s = 0, and
-forces may grow with the speed squared: the mobility is a second column. Elsewhere it is a small one, for dampers.
+Of one order the peak at Ωp determines (q - s) Ωp = ω0 alone, of two orders s and ω0. Of a sensor that stands on the ring s = 0,
+and forces may grow with the speed squared: the mobility is a second column. Elsewhere it is a small one, for dampers.
 
 Coefficients are linear; of each line only the orders count that it makes more probable. Lines are compared by the evidence with
 normal priors of the coefficients, whose scale is that of the amplitudes (Bishop, "Pattern recognition and machine learning"
@@ -168,7 +169,7 @@ class ModeProblem:
 
     @cached_property
     def weight(self) -> Array:
-        """Usual over expected standard deviation of an amplitude; 0 if a stretch does not show the order; shape (orders, k)."""
+        """Usual over expected standard deviation of an amplitude, 0 if a stretch does not show it, shape (orders, k)."""
         amplitude = self.spectrum.amplitude
         shown = np.isfinite(amplitude)
         changes = np.abs(np.diff(np.nan_to_num(amplitude), axis=1)).max(axis=0, initial=0.0)
@@ -180,27 +181,27 @@ class ModeProblem:
     @cached_property
     def count(self) -> Array:
         """Number of stretches of each order."""
-        return np.maximum((self.weight > 0.0).sum(axis=1), 1).astype(float)
+        return np.asarray(np.maximum((self.weight > 0.0).sum(axis=1), 1), float)
 
     @cached_property
     def scale(self) -> Array:
         """Root mean square of each order without its mean."""
         mean = (self.measured * self.weight).sum(axis=1) / np.maximum(self.weight.sum(axis=1), 1e-300)
         square = (np.abs(self.weight * (self.measured - mean[:, None])) ** 2).sum(axis=1) / self.count
-        return np.sqrt(np.maximum(square, 1e-300))
+        return np.asarray(np.sqrt(np.maximum(square, 1e-300)))
 
     @cached_property
     def base(self) -> Complex:
         """What passes by the modes, weighted, shape (orders, k, c).
 
-        A constant, a share that grows with the speed squared, and the same order against the spline that turns with the output.
+        A constant, a share that grows with the speed squared, and the order against the spline that turns with the output.
         """
         square = (self.spectrum.speed / np.abs(self.spectrum.speed).max()) ** 2
         columns = [np.ones((len(self.scale), len(square)), complex), np.broadcast_to(square, (len(self.scale), len(square)))]
         if np.ptp(self.spectrum.output) > MIN_OUTPUT_TURN:
             against = np.outer(self.spectrum.orders, self.spectrum.output)
             columns += [np.exp(1j * against), np.exp(-1j * against)]
-        return np.stack(columns, axis=2) * self.weight[..., None]
+        return np.asarray(np.stack(columns, axis=2) * self.weight[..., None], complex)
 
     # ---- Columns ---------------------------------------------------------------------------------------------------
 
@@ -238,7 +239,8 @@ class ModeProblem:
     @cached_property
     def _waves(self) -> Complex:
         """Waves of the orders at the times, shape (orders, steps)."""
-        return np.exp(1j * np.outer(self.spectrum.orders, np.zeros(0) if self._times is None else self._times.angle))
+        angle = np.zeros(0) if self._times is None else self._times.angle
+        return np.asarray(np.exp(1j * np.outer(self.spectrum.orders, angle)))
 
     def _answers(self, slope: float, frequency: float, damping: float) -> Complex:
         """Return the mean receptance in each stretch of forces of the orders, seen from a line, shape (orders, k)."""
@@ -288,18 +290,18 @@ class ModeProblem:
 
     @cached_property
     def _mean_size(self) -> Array:
-        return np.sqrt((np.abs(self.weight * self.measured) ** 2).sum(axis=1) / self.count) + 1e-300
+        return np.asarray(np.sqrt((np.abs(self.weight * self.measured) ** 2).sum(axis=1) / self.count) + 1e-300)
 
     def _size(self, column: Complex) -> Array:
         """Return the root mean square of a column of each order, without its mean."""
         mean = (column * self.weight).sum(axis=1) / np.maximum(self.weight.sum(axis=1), 1e-300)
         square = (np.abs(self.weight * (column - mean[:, None])) ** 2).sum(axis=1) / self.count
-        return np.sqrt(np.maximum(square, 1e-300))
+        return np.asarray(np.sqrt(np.maximum(square, 1e-300)))
 
     # ---- Fit -------------------------------------------------------------------------------------------------------
 
     def _projected(self, modes: Sequence[Line], noise: Array) -> tuple[Complex, Array, Complex, Complex, Complex]:
-        """Return columns, priors, coefficients, covariance for noise 1 and residual (weighted), by least squares with priors."""
+        """Return columns, priors, coefficients, covariance for noise 1 and weighted residual, of least squares with priors."""
         columns, prior = self._columns(modes)
         used = (prior > 0.0).any(axis=0)
         scaled = columns[..., used] * prior[:, None, used]
@@ -321,10 +323,10 @@ class ModeProblem:
         """Return the fit of lines from first values, for a noise of the amplitudes; only some lines are searched if `free`."""
         lines = self._searched(tuple(lines), noise, correlated, range(len(lines)) if free is None else free) if lines else ()
         _, prior, values, covariance, left = self._projected(lines, noise)
-        spread = np.zeros((0, 0))
+        spread: Array = np.zeros((0, 0))
         if lines and free is None:
             jacobian = self._jacobian(lines, noise, correlated)
-            spread = np.linalg.pinv(jacobian.T @ jacobian)
+            spread = np.asarray(np.linalg.pinv(jacobian.T @ jacobian), float)
         parts, sigma = self._parts(lines, values, covariance)
         sigma *= (noise * np.sqrt(correlated))[:, None, None]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -504,19 +506,19 @@ class ModeProblem:
                     weight, independent = self.weight[q, ::every], self.count[q] / correlated[q]
                     gains[q, met] = _gain(part * weight, bases[q], targets[q], float(noise[q]), independent)
                 by_slope[slope] = np.where(gains > MIN_ORDER_EVIDENCE, gains, 0.0)
-            for slope, own in by_slope.items():
-                opposite = by_slope[-slope] if slope else np.zeros(own.shape)
-                for second in (np.zeros(own.shape), opposite) if slope > 0 else (np.zeros(own.shape),):
-                    total = own.sum(axis=0) + second.sum(axis=0)
+            for slope, gains in by_slope.items():
+                opposite = by_slope[-slope] if slope else np.zeros(gains.shape)
+                for second in (np.zeros(gains.shape), opposite) if slope > 0 else (np.zeros(gains.shape),):
+                    total = gains.sum(axis=0) + second.sum(axis=0)
                     peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
                     for k in peaks[total[peaks] > 0.0].tolist():
-                        acts = (*(own[:, k] > 0.0).tolist(), *(second[:, k] > 0.0).tolist())
+                        acts = (*(gains[:, k] > 0.0).tolist(), *(second[:, k] > 0.0).tolist())
                         found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts, whole=True)))
         found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
         kept: list[tuple[float, Line]] = []
         for gain, line in found[:MAX_PROPOSED]:
-            slope = abs(line.slope)
-            if not any(abs(m.slope) == slope and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
+            steep = abs(line.slope)
+            if not any(abs(m.slope) == steep and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
                 kept.append((gain, line))
         return kept
 
@@ -546,9 +548,7 @@ def _receptance(frequency: Array, natural: float | Array, damping: float) -> Com
     return np.asarray(1.0 / (1.0 - ratio**2 + 2j * damping * ratio))
 
 
-def _later(
-    times: _Times, orders: Array, force: Complex, speed: Array, natural: float, damping: float
-) -> Complex:
+def _later(times: _Times, orders: Array, force: Complex, speed: Array, natural: float, damping: float) -> Complex:
     """Return mean answers in stretches to forces of orders, in the frame of their phase, integrated in time.
 
     H has two poles. That on the side of the frequency of the force is integrated exactly over steps in which the frequency is
@@ -583,7 +583,7 @@ def _later(
     np.cumsum(0.5 * (framed[:, 1:] + framed[:, :-1]), axis=1, out=sums[:, 1:])
     ends = []
     for at in (times.first, times.last):
-        below = np.minimum(at.astype(int), framed.shape[1] - 2)
+        below = np.minimum(at.astype(int), len(times.angle) - 2)
         share = at - below
         change = framed[:, below + 1] - framed[:, below]
         ends.append(sums[:, below] + share * (framed[:, below] + 0.5 * share * change))
@@ -593,7 +593,7 @@ def _later(
 def _extended(at: Array, time: Array, angle: Array) -> Array:
     """Return the angle at times, past its end with its last speed."""
     speed = (angle[-1] - angle[-2]) / (time[-1] - time[-2])
-    return np.interp(at, time, angle) + speed * np.maximum(at - time[-1], 0.0)
+    return np.asarray(np.interp(at, time, angle) + speed * np.maximum(at - time[-1], 0.0))
 
 
 # ---- Number of modes and waves ---------------------------------------------------------------------------------------
@@ -720,7 +720,10 @@ def _freed(problem: ModeProblem, best: Fitted) -> Fitted:
         first, second = line.acts.T
         if first.any() and second.any():
             none = (False,) * len(first)
-            pair = (line._replace(acts_on=(*first.tolist(), *none)), line._replace(slope=-line.slope, acts_on=(*second.tolist(), *none)))
+            pair = (
+                line._replace(acts_on=(*first.tolist(), *none)),
+                line._replace(slope=-line.slope, acts_on=(*second.tolist(), *none)),
+            )
             rivals.append((*before, pair[0], *after, pair[1]))
         for lines in rivals:
             noise = _noise(best, problem)

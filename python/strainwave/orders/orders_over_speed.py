@@ -4,8 +4,9 @@ In each stretch the column is a polynomial of the angle plus waves of the orders
 
 .. math:: y = \sum_m c_m \theta^m + \mathrm{Re} \sum_q X_q e^{j q \theta},
 
-all fitted together. So the ratio of a gear, a drift and a wind-up need not be known, and an order that is followed does not leak
-into another one. A stretch has enough revolutions to separate the orders; beyond that its speed changes by at most a small share.
+all fitted together; amplitudes may change along the stretch. So the ratio of a gear, a drift and a wind-up need not be known,
+and an order that is followed does not leak into another one. A stretch has enough revolutions to separate the orders; beyond
+that its speed changes by at most a small share.
 """
 
 from __future__ import annotations
@@ -129,7 +130,7 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
         series = convert(unwrapped(column, convert(series, recording.unit(column), "rad")), "rad", recording.unit(column))
         turns = convert(series[[0, -1]], recording.unit(column), "rad")
         per_input = float(abs((turns[1] - turns[0]) / (turned[part][-1] - turned[part][0])))
-    return Turning(time, sense * turned[part], sense * speed[part], series, per_input, remarks)
+    return Turning(np.asarray(time), sense * turned[part], sense * speed[part], series, per_input, remarks)
 
 
 def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:
@@ -141,7 +142,9 @@ def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], be
     wanted = len(chosen)
     chosen += _separated(others)[0]
     if near := [number(order, 5) for order in own if order not in separate]:
-        remarks.append(f"orders {listed(near)} are not followed: orders that are no whole ones lie within {1.0 / MAX_TURNS:g} of them")
+        remarks.append(
+            f"orders {listed(near)} are not followed: orders that are no whole ones lie within {1.0 / MAX_TURNS:g} of them"
+        )
     gap = min((high - low for low, high in pairwise([0.0, *sorted(chosen)])), default=1.0)
     turns = min(max(MIN_TURNS, 1.0 / gap), MAX_TURNS)
     rows: list[tuple[float, Complex, float, tuple[int, int, int]]] = []
@@ -210,7 +213,7 @@ def _amplitudes(recording: Turning, start: int, stop: int, orders: Sequence[floa
     angle = recording.angle[start:stop]
     slow = np.array(orders) * float(np.diff(angle).max()) < MAX_WAVE_STEP
     along = (angle - angle.mean()) / max(float(np.ptp(angle)), 1e-300)
-    waves = order_waves(angle, np.array(orders)[slow])
+    waves = order_waves(angle, np.array(orders)[slow].tolist())
     columns = np.concatenate([along[:, None] ** np.arange(TREND_POWERS), waves, along[:, None] * waves], axis=1)
     if len(angle) < 2 * columns.shape[1]:
         return None

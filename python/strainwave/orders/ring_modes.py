@@ -1,9 +1,9 @@
-"""Modes of a gear in measured orders over the speed: natural frequency, damping and waves, as far as the orders determine them."""
+"""Modes of a gear in measured orders over the speed: frequency, damping and waves, as far as orders determine them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import isfinite, nan, tau
 from typing import TYPE_CHECKING
 
@@ -20,8 +20,8 @@ from strainwave.orders.bearing_candidates import BearingCandidates, bearing_cand
 from strainwave.orders.mode_fit import Fitted, Line, ModeProblem, selected
 from strainwave.orders.orders_over_speed import (
     MAX_FOLLOWED,
+    MAX_TURNS,
     OrdersOverSpeed,
-    Turning,
     orders_over_speed,
     turning_one_way,
     uneven_orders,
@@ -45,7 +45,8 @@ MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must pass
 MIN_STRETCHES_IN_PEAK = 4  # within that reach, of all orders that pass the mode
 MIN_SIGNIFICANCE_OF_ORDER = 10.0  # standard deviations of a coefficient, from which an order counts as passing a mode
-MAX_SLOPE_SIGMA = 0.3  # of a slope that is no whole one, for a frequency
+SIDEBAND_WIDTHS = 3.0  # half widths of a peak, within which another order's peak lies at the same speed
+MAX_SPLIT = 0.02  # of the frequency, between both lines of a ring that the lobes hold in part
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
 MAX_CANDIDATE_WAVES = 6
@@ -54,6 +55,8 @@ SAME_MODE_SIGMA = 3.0  # standard deviations between the frequencies of both lin
 MIN_DAMPING_SIGMA = 0.03  # of the damping: forces are not quite constant along a peak (assumed)
 MIN_WIDTH_SIGMA = 0.05  # of the half width of a peak, in its frequency, for the same reason (assumed)
 MIN_FREQUENCY_SIGMA = 2e-4  # of the frequency: clocks and speeds are not better
+BALL_HARMONICS = (1, 2, 3, 4)  # of an order that is no whole one: a whole order beside them may be of the balls, too
+BALL_SIDEBANDS = (-3, -1, 0, 1, 3)
 MAX_BESIDE = 3  # orders that are no whole ones, fitted beside those that are followed
 MAX_UNEVEN = 8  # orders that are no whole ones, for which a bearing is looked for
 FIGURE_HEIGHT = 1.7  # inches of an order
@@ -82,12 +85,12 @@ class RingMode:
     """A mode that orders pass.
 
     Attributes:
-        waves: of its shape, if it is determined; None if several are not separable, or none is whole
+        waves: of its shape, if it is determined; None if several are not separable
         natural_frequency: [rad/s], of a shaft at rest; nan if the candidates differ in it
         natural_frequency_sigma: its standard deviation [rad/s]
         damping: as a share of the critical one [1]; nan if it is not determined
         damping_sigma: its standard deviation [1]
-        slope: of its lines over the speed [1], without sign; the waves of a mode that travels freely
+        slope: of its lines over the speed [1], without sign: the waves within their uncertainty; nan if not determined
         slope_sigma: its standard deviation [1]
         orders: that pass it
         candidates: numbers of waves, the most probable first; one if each other is less probable by 10 or more
@@ -137,7 +140,8 @@ class RingModes(ComparedByFields, Pictured):
     def _headline(self) -> str:
         low, high = (number(float(end) * 30.0 / np.pi, 4) for end in (self.speed.min(), self.speed.max()))
         found = f"{len(self.modes)} mode{'s' * (len(self.modes) != 1)}" if self.modes else "no mode"
-        return f"{found} in {self.column.replace('_', ' ')}, orders {listed([number(q, 5) for q in self.orders])}, {low} to {high} 1/min"
+        orders = f"orders {listed([number(q, 5) for q in self.orders])}" if self.orders else "no order"
+        return f"{found} in {self.column.replace('_', ' ')}, {orders}, {low} to {high} 1/min"
 
     def _rows(self) -> Iterator[Row]:
         for place, mode in enumerate(self.modes, 1):
@@ -159,9 +163,9 @@ def ring_modes(
 ) -> RingModes:
     """Return the modes, and the balls of a bearing, that explain the orders of a column over the speed.
 
-    A mode of the ring with n waves is passed by order q of the wave generator at the speeds |q + n| Ω = ω and |q - n| Ω = ω, a
-    mode that does not travel at q Ω = ω. So two orders that pass it separate frequency and waves; of one order several numbers of
-    waves, each with its frequency, are left. A sensor that stands, as an accelerometer, does not determine the waves.
+    A mode of the ring with n waves is passed by order q of the wave generator at the speeds |q + n| Ω = ω and |q - n| Ω = ω,
+    a mode that does not travel at q Ω = ω. So two orders that pass it separate frequency and waves; one order leaves several
+    numbers of waves, each with its frequency. A sensor that stands, as an accelerometer, does not determine the waves.
 
     Args:
         recordings: one run-up or run-down, or several recordings, of which each may be at constant speed; with `time`, the
@@ -178,8 +182,8 @@ def ring_modes(
         TypeError: an argument is not of its kind
         ValueError: a column or the time is missing, the shaft does not turn, or the speeds are too few or too close
 
-    Valid if forces depend on the angle and, at most, on the speed squared, and the base of each order varies in this way; friction
-    that changes an order along the speed otherwise is no part of the model.
+    Valid if forces depend on the angle and, at most, on the speed squared, as does what passes by the modes; friction that
+    changes an order along the speed otherwise is no part of the model.
 
     >>> import strainwave as sw
     >>> time = np.arange(0.0, 60.0, 2e-3)
@@ -204,15 +208,20 @@ def ring_modes(
     turning = [turning_one_way(each, arguments.text("column", column), arguments.text("angle", angle)) for each in given]
     uneven = uneven_orders(turning)[:MAX_UNEVEN] if orders is None else []
     if orders is None:
-        followed = [line.order for line in whole_orders(turning)][:MAX_FOLLOWED]
+        near_balls = [h * line.order + m for line in uneven for h in BALL_HARMONICS for m in BALL_SIDEBANDS]
+        whole = [line.order for line in whole_orders(turning)]
+        followed = [order for order in whole if all(abs(order - other) > 1.0 / MAX_TURNS for other in near_balls)][
+            :MAX_FOLLOWED
+        ]
     else:
         followed = arguments.positive_series("orders", orders).tolist()
     spectrum = orders_over_speed(turning, followed, [line.order for line in uneven][:MAX_BESIDE])
     remarks = list(dict.fromkeys([*(remark for each in turning for remark in each.remarks), *spectrum.remarks]))
     bearing = bearing_candidates([line.order for line in uneven], [line.sigma for line in uneven]) if uneven else None
     problem = ModeProblem(spectrum, column in STANDING_COLUMNS)
+    modes: tuple[RingMode, ...] = ()
     if why := _too_little(spectrum):
-        modes, fit = (), problem.fit((), problem.scale, np.ones(len(spectrum.orders))) if len(spectrum.orders) else None
+        fit = problem.fit((), problem.scale, np.ones(len(spectrum.orders))) if len(spectrum.orders) else None
         remarks.append(why)
     else:
         choice = selected(problem)
@@ -251,7 +260,8 @@ def _too_little(spectrum: OrdersOverSpeed) -> str:
     if not len(spectrum.orders):
         return "no order stands out, so no mode is looked for"
     if len(spectrum.speed) < MIN_STRETCHES:
-        return f"{len(spectrum.speed)} stretches determine no mode: {MIN_STRETCHES} are needed; run up slower, or record more speeds"
+        needed = f"{MIN_STRETCHES} are needed; run up slower, or record more speeds"
+        return f"{len(spectrum.speed)} stretches determine no mode: {needed}"
     if spectrum.speed.max() < MIN_SPEED_RATIO * spectrum.speed.min():
         return "the speed varies too little for orders to pass a mode; run up further"
     return ""
@@ -295,18 +305,60 @@ def _stated(
         passings.append(_Passing(line, sigma, passed, near))
     if beyond:
         remarks.append(
-            f"order{'s' * (len(beyond) > 1)} {listed([number(q, 5) for q in sorted(beyond)])} may come near a peak that is not passed "
-            "from below to above: no mode is stated by it; run further"
+            f"order{'s' * (len(beyond) > 1)} {listed([number(q, 5) for q in sorted(beyond)])} may come near a peak that is not "
+            "passed from below to above: no mode is stated by it; run further"
         )
     modes = []
     for passing in passings:
-        mode = _mode(problem, passing)
+        mode = None if _is_sideband(passing, passings) else _mode(problem, passing)
         if mode is None:
             at = listed([f"{number(q, 5)} at {number(peak * 30.0 / np.pi, 4)} 1/min" for q, peak in passing.peaks])
-            remarks.append(f"order {at} has a peak, whose frequency at rest is not determined")
+            remarks.append(f"a peak of order {at} is that of no mode that is determined")
         else:
             modes.append(mode)
-    return tuple(sorted(modes, key=lambda mode: mode.candidates[0].natural_frequency)), remarks
+    return tuple(sorted(_joined(modes), key=lambda mode: mode.candidates[0].natural_frequency)), remarks
+
+
+def _is_sideband(passing: _Passing, passings: Sequence[_Passing]) -> bool:
+    """Return True if one order alone has a peak, at a speed at which another order has one of another mode."""
+    if len(passing.orders) > 1:
+        return False
+    reach = SIDEBAND_WIDTHS * passing.line.damping
+    return any(
+        abs(at / peak - 1.0) < reach + SIDEBAND_WIDTHS * other.line.damping
+        for other in passings
+        if other is not passing
+        for _, at in other.peaks
+        for _, peak in passing.peaks
+    )
+
+
+def _joined(modes: Sequence[RingMode]) -> list[RingMode]:
+    """Return modes, those of nearly one frequency and the same waves as one whose uncertainty contains both."""
+    kept = list[RingMode]()
+    for mode in modes:
+        twin = next((k for k, other in enumerate(kept) if _are_one(mode, other)), None)
+        if twin is None:
+            kept.append(mode)
+        else:
+            other = kept[twin]
+            middle = 0.5 * (mode.natural_frequency + other.natural_frequency)
+            apart = abs(mode.natural_frequency - other.natural_frequency)
+            sigma = max(apart, mode.natural_frequency_sigma, other.natural_frequency_sigma)
+            damping = 0.5 * (mode.damping + other.damping)
+            damping_sigma = max(abs(mode.damping - other.damping), mode.damping_sigma, other.damping_sigma)
+            candidate = replace(mode.candidates[0], natural_frequency=middle, natural_frequency_sigma=sigma)
+            kept[twin] = replace(
+                other, natural_frequency=middle, natural_frequency_sigma=sigma, damping=damping, damping_sigma=damping_sigma,
+                orders=tuple(sorted({*mode.orders, *other.orders})), candidates=(candidate,),
+            )  # fmt: skip
+    return kept
+
+
+def _are_one(mode: RingMode, other: RingMode) -> bool:
+    """Return True for the same waves and nearly one frequency: a ring that the lobes hold in part has two such lines."""
+    apart = abs(mode.natural_frequency / other.natural_frequency - 1.0)
+    return bool(mode.waves is not None and mode.waves == other.waves and apart < MAX_SPLIT)
 
 
 def _peak(line: Line, order: float, of: int) -> float:
@@ -344,38 +396,22 @@ def _mode(problem: ModeProblem, passing: _Passing) -> RingMode | None:
     slope, slope_sigma = abs(line.slope), float(sigma[2])
     whole = round(slope)
     from_whole = abs(slope - whole) + 2.0 * slope_sigma
-    common = {"damping": damping, "damping_sigma": damping * spread, "orders": passing.orders}
-    if problem.stands:
-        candidate = _candidate(problem, 0, line.frequency, line.frequency * frequency_sigma)
-        why = "a sensor that stands sees each order at ω over its own order, whatever the waves: compare with an encoder"
-        return RingMode(
-            None, line.frequency, line.frequency * frequency_sigma, slope=nan, slope_sigma=nan,
-            candidates=(candidate,), separated_by=why, **common,
-        )  # fmt: skip
-    several = len(passing.orders) > 1  # one order leaves the slope to the shape of its peaks alone
-    if several and from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals:
-        candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
-        return RingMode(
-            whole, line.frequency, line.frequency * frequency_sigma, slope=slope, slope_sigma=slope_sigma,
-            candidates=(candidate,), **common,
-        )  # fmt: skip
-    candidates = _candidates(problem, passing, several)
-    if len(candidates) < 2:
-        if not several or passing.rivals or slope_sigma > MAX_SLOPE_SIGMA:
-            return None
-        candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
-        why = (
-            f"its line changes by {uncertain(slope, slope_sigma)} of the speed, no whole number: the lobes hold it in part, or two modes "
-            "meet; a further order that passes it would separate these"
-        )
-        return RingMode(
-            None, line.frequency, line.frequency * frequency_sigma, slope=slope, slope_sigma=slope_sigma,
-            candidates=(candidate,), separated_by=why, **common,
-        )  # fmt: skip
-    return RingMode(
-        None, nan, nan, slope=slope, slope_sigma=slope_sigma, candidates=candidates,
-        separated_by=_separated_by(problem, passing, candidates), **common,
+    uncertainty = line.frequency * frequency_sigma
+    candidate = _candidate(problem, 0 if problem.stands else whole, line.frequency, uncertainty)
+    mode = RingMode(
+        None, line.frequency, uncertainty, damping, damping * spread, nan, nan, passing.orders, (candidate,)
     )  # fmt: skip
+    if problem.stands:
+        why = "a sensor that stands sees each order at ω over its own order, whatever the waves: compare with an encoder"
+        return replace(mode, separated_by=why)
+    if len(passing.orders) > 1:
+        is_whole = from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals
+        return replace(mode, waves=whole, slope=slope, slope_sigma=slope_sigma) if is_whole else None
+    candidates = _candidates(problem, passing)  # the shape of one order's peak is no evidence of a slope
+    if len(candidates) < 2:
+        return None
+    why = _separated_by(problem, passing, candidates)
+    return replace(mode, natural_frequency=nan, natural_frequency_sigma=nan, candidates=candidates, separated_by=why)
 
 
 def _candidate(problem: ModeProblem, waves: int, frequency: float, sigma: float) -> ModeCandidate:
@@ -386,22 +422,20 @@ def _candidate(problem: ModeProblem, waves: int, frequency: float, sigma: float)
     return ModeCandidate(waves, frequency, sigma, tuple(speeds))
 
 
-def _candidates(problem: ModeProblem, passing: _Passing, several: bool) -> tuple[ModeCandidate, ...]:
-    """Return the numbers of waves that are left, each with the frequency at which the peak lies where it was measured."""
-    line, (order, peak) = passing.line, passing.peaks[0]
-    spread, sigma = float(passing.sigma[2]) if several else np.inf, max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
-    near = [rival.slope for rival in passing.rivals]
+def _candidates(problem: ModeProblem, passing: _Passing) -> tuple[ModeCandidate, ...]:
+    """Return the numbers of waves that the peak of one order leaves, each with the frequency at which it lies there."""
+    line, sigma = passing.line, max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
     left: dict[int, tuple[float, float]] = {}
-    for slope in sorted(range(-MAX_CANDIDATE_WAVES, MAX_CANDIDATE_WAVES + 1), key=abs):
-        lag = min([abs(slope - line.slope) / max(spread, 0.05), *(abs(slope - each) / 0.15 for each in near)])
-        gap = abs(order - slope)
-        if lag > np.sqrt(2.0 * np.log(MAX_ODDS)) or gap < 0.5:
-            continue
-        frequency = gap * peak
-        other = frequency / abs(order + slope) if abs(order + slope) > 0.0 else np.inf
-        seen = any(q == order and abs(at / other - 1.0) < 3.0 * line.damping for q, at in passing.peaks)
-        if slope == 0 or seen or not _passes(problem.spectrum.speed, other, line.damping):
-            left.setdefault(abs(slope), (frequency, frequency * sigma))
+    for order, peak in passing.peaks:
+        for slope in sorted(range(-MAX_CANDIDATE_WAVES, MAX_CANDIDATE_WAVES + 1), key=abs):
+            gap = abs(order - slope)
+            if gap < 0.5:
+                continue
+            frequency = gap * peak
+            other = frequency / abs(order + slope) if abs(order + slope) > 0.0 else np.inf
+            seen = any(abs(at / other - 1.0) < 3.0 * line.damping for _, at in passing.peaks)
+            if slope == 0 or seen or not _passes(problem.spectrum.speed, other, line.damping):
+                left.setdefault(abs(slope), (frequency, frequency * sigma))
     return tuple(_candidate(problem, waves, *of) for waves, of in left.items())
 
 
@@ -416,14 +450,13 @@ def _separated_by(problem: ModeProblem, passing: _Passing, candidates: Sequence[
     ]
     seen = listed([number(q, 5) for q in passing.orders])
     which = " or ".join(str(each.waves) for each in candidates)
-    by = f"order {seen} alone passes it" if len(passing.orders) == 1 else f"orders {seen} leave both"
+    by = f"order {seen} alone passes it"
     text = f"waves {which} are not separable: {by}"
-    if len(candidates) < 2:
-        return f"waves are not determined: {by}; excite another order"
     if not beyond:
         return f"{text}; excite another order"
     speed, order, waves = min(beyond)
-    return f"{text}: run to {number(speed * 30.0 / np.pi * 1.05, 3)} 1/min, where order {number(order, 5)} peaks with waves {waves} only"
+    run = f"run to {number(speed * 30.0 / np.pi * 1.05, 3)} 1/min"
+    return f"{text}: {run}, where order {number(order, 5)} peaks with waves {waves} only"
 
 
 def words_of(mode: RingMode) -> str:
@@ -465,7 +498,12 @@ def draw_modes(figure: Figure, modes: RingModes) -> None:
     for axes, k in zip(panels, drawn, strict=True):
         axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
         marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="model")
-        critical = [speed * 30.0 / np.pi for mode in modes.modes for order, speed in mode.candidates[0].critical_speeds if order == modes.orders[k]]
+        critical = [
+            speed * 30.0 / np.pi
+            for mode in modes.modes
+            for order, speed in mode.candidates[0].critical_speeds
+            if order == modes.orders[k]
+        ]
         for speed in critical:
             if rpm[0] < speed < rpm[-1]:
                 axes.axvline(speed, color=LIGHT["muted"], linestyle="--", linewidth=0.8)

@@ -19,7 +19,7 @@ def receptance(frequency: np.ndarray, natural: float, damping: float) -> np.ndar
 
 
 def spectrum(natural: float, damping: float, waves: float) -> OrdersOverSpeed:
-    """Return amplitudes of two orders at 60 constant speeds, of a mode with so many waves and of an error that does not vibrate."""
+    """Return amplitudes of two orders at 60 constant speeds, of a mode and of an error that does not vibrate."""
     speed = tau * np.linspace(4.0, 40.0, 60)
     noise = np.random.default_rng(2).normal(0.0, 1e-8, (2, 2, len(speed)))
     answer = sum(receptance(np.outer(ORDERS + sign * waves, speed), natural, damping) for sign in (1.0, -1.0))
