@@ -213,7 +213,7 @@ def turns_steadily(angle: Array, speed: Array) -> bool:
     """
     parts = stretches(speed)
     ways = [abs(float(angle[part.stop - 1] - angle[part.start])) for part in parts]
-    return fills_record(parts, len(speed)) and min(ways) > 2.0 * np.pi
+    return fills_record(parts, len(speed)) and bool(min(ways) > 2.0 * np.pi)
 
 
 def runs_of(wanted: NDArray[np.bool_], min_rows: int) -> list[slice]:
