@@ -35,6 +35,7 @@ Array = NDArray[np.float64]
 QUANTITY_UNITS = {"transmission_error": "rad", "stiffness": "N.m/rad", "mesh_stiffness": "N/m"}
 PLACE_UNITS = {"angle": "rad", "torque": "N.m"}
 MODE_UNITS = {"frequency": "Hz", "waves": "1", "damping": "1", "mass": "kg", "shape_squared": "1/kg"}
+MAX_MODES = 4  # of a ring
 MAX_LOADS = 1000  # columns of one quantity
 _OF_LOAD = re.compile(
     rf"({'|'.join(QUANTITY_UNITS)})[\s_@=(]*([-+\u2212]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)[\s_]*([^\d\s()][^()]*?)\)?"
@@ -214,7 +215,7 @@ def _wanted(opened: OpenTable, columns: Mapping[str, str], wide: Mapping[str, _L
     wanted = {name: there[name] for name in known if name in there} | {name: name for name in wide} | dict(columns)
     if unknown := [name for name in columns if name not in known]:
         raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of such a table; they are {listed(known)}")
-    both = wide and next((name for name in wanted if name not in ("angle", *wide)), None)
+    both = next((name for name in wanted if name not in ("angle", *wide)), "") if wide else ""
     if both:
         raise ValueError(f"{opened.file} has columns of single loads and a column {both}; leave one of the two out")
     for name, example in (("angle", "phi"), *(() if wide else (("torque", "load"),))):
@@ -315,6 +316,34 @@ class ModeTable(ComparedByFields, Presented):
     def compliance(self) -> Array:
         """Static compliance of each mode at the mesh, 1 / (mass x natural frequency squared) [m/N], shape (n,)."""
         return np.asarray(1.0 / (self.mass * (tau * self.frequency) ** 2))
+
+    @property
+    def ring(self) -> Any:
+        """The ring of these modes for a `structure.Staged`, `sw.ring.Modes`; of many, those of the largest compliance."""
+        from strainwave import ring
+
+        kept = self._kept
+        return ring.Modes(
+            natural_frequency=(tau * self.frequency[kept]).tolist(),
+            waves=self.waves[kept].tolist(),
+            damping=self.damping[kept].tolist(),
+            mass=self.mass[kept].tolist(),
+        )
+
+    @property
+    def left_out(self) -> list[str]:
+        """In words, the modes that `ring` leaves out; empty if it has all."""
+        if len(self._kept) == len(self.frequency):
+            return []
+        rest = np.delete(np.arange(len(self.frequency)), self._kept)
+        share = typeset.percent(float(self.compliance[rest].sum() / self.compliance.sum()))
+        names = listed(f"{each:.4g} Hz" for each in np.sort(self.frequency[rest]))
+        return [f"a ring has {MAX_MODES} modes; left out: {names}, with {share} of the compliance of all"]
+
+    @property
+    def _kept(self) -> NDArray[np.int_]:
+        """Places of the modes of the largest compliance, in their order."""
+        return np.sort(np.argsort(-self.compliance, kind="stable")[:MAX_MODES])
 
     @staticmethod
     def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> ModeTable:
