@@ -135,6 +135,7 @@ class MeshTable(ComparedByFields, Presented):
         wanted = _wanted(opened, columns or {}, wide)
         series = _read(path, opened, wanted, {**(units or {}), **_units_of_loads(wide, units or {})})
         try:
+            _check_mesh_unit(series)
             rows = _stacked(series, wide) if wide else {name: series.values(name, unit) for name, unit in _units_of(series)}
             return MeshTable(**rows, source=Path(path).name)
         except ValueError as error:
@@ -242,6 +243,14 @@ def _read(path: str | Path, opened: OpenTable, wanted: Mapping[str, str], units:
     """Return the columns wanted."""
     there = {name: unit for name, unit in units.items() if name in wanted}
     return recording_of(path, read_table(opened, wanted, there))
+
+
+def _check_mesh_unit(series: Recording) -> None:
+    """Refuse a mesh stiffness at the output's scale, whose lever only who computed it knows."""
+    for name in series.names:
+        if name.startswith("mesh_stiffness") and measures(series.unit(name), "N.m/rad"):
+            remedy = "divide it by (pitch radius x cos(pressure angle))^2, which gives N/m along the line of action"
+            raise ValueError(f"column {quoted(name)} is in {series.unit(name)}; {remedy}")
 
 
 def _units_of(series: Recording) -> list[tuple[str, str]]:

@@ -25,7 +25,8 @@ MAX_DISAGREEMENT = 0.25  # relative, of the column stiffness and the slope of th
 NAMED_SPREAD = 0.02  # relative, from which a change with the load is stated
 CONVERGED = 1e-11  # relative change in a round
 ROUNDS = 12  # of the corrections of second order in the variation
-POINTS_PER_TURN = 1024  # at which they are computed
+POINTS_PER_PERIOD = 4  # of the highest order that may vary, at which they are computed
+MIN_POINTS = 1024  # per turn
 
 
 # ---- Variation of a stiffness ----------------------------------------------------------------------------------------
@@ -167,10 +168,12 @@ def _round(
 
 def _twist_waves(spring: SpringFit, found: Harmonics, varying: StiffnessVariation) -> tuple[Array, Complex]:
     """Return what a variation of the stiffness adds to mean, shape (m,), and waves, shape (m, h), of the twist of each load."""
-    angle = 2.0 * np.pi * np.arange(POINTS_PER_TURN) / POINTS_PER_TURN
-    factor = 1.0 + np.imag(np.exp(1j * np.outer(angle, found.orders)) @ varying.waves)
+    points = max(MIN_POINTS, POINTS_PER_PERIOD * int(found.orders[-1]))
+    present = np.flatnonzero(varying.waves)
+    angle = 2.0 * np.pi * np.arange(points) / points
+    factor = 1.0 + np.imag(np.exp(1j * np.outer(angle, found.orders[present])) @ varying.waves[present])
     twist = np.array([spring.law.twist(torque / factor) for torque in found.torque.tolist()])
-    spectrum = np.fft.rfft(twist, axis=1) / POINTS_PER_TURN
+    spectrum = np.fft.rfft(twist, axis=1) / points
     even = np.array([spring.law.twist(torque) for torque in found.torque.tolist()])
     return spectrum[:, 0].real - even, 2j * spectrum[:, found.orders.astype(int)]
 

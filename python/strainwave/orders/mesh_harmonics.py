@@ -20,7 +20,9 @@ from strainwave.messages import listed
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MAX_ORDERS = 64  # that are looked for, multiples of `repeats`
+MAX_ORDERS = 1024  # that are looked for at even angles, multiples of `repeats`
+MAX_ORDERS_OF_UNEVEN = 64  # likewise at uneven angles, by normal equations
+EVEN_STEP = 1e-6  # relative difference of steps that are even
 MAX_LOAD_SPREAD = 1e-3  # of the largest torque, by which rows of one load differ, as a solver's tolerance makes them
 MAX_LOAD_COUNT = 1000
 ROWS_PER_BLOCK = 8192  # whose normal equations are summed at once
@@ -77,11 +79,14 @@ def harmonics(angle: Array, torque: Array, values: Array, repeats: int) -> Harmo
     gaps = [_largest_gap(angle[rows], tau / repeats) for rows in rows_of_loads]
     loads = np.array([torque[rows].mean() for rows in rows_of_loads])
     worst = int(np.argmax(gaps))
-    count = min(int(np.ceil(np.pi / (repeats * gaps[worst]) * (1.0 - RELATIVE_ROUNDING))) - 1, MAX_ORDERS)
+    are_even = all(_is_even(angle[rows], tau / repeats) for rows in rows_of_loads)
+    most = MAX_ORDERS if are_even else MAX_ORDERS_OF_UNEVEN
+    count = min(int(np.ceil(np.pi / (repeats * gaps[worst]) * (1.0 - EVEN_STEP))) - 1, most)
     if count < 1 or any(len(rows) > 1 and np.diff(np.unique(angle[rows])).max(initial=0.0) > np.pi for rows in rows_of_loads):
         raise ValueError(_undetermined(angle[rows_of_loads[worst]], float(loads[worst]), gaps[worst], repeats))
     orders = repeats * np.arange(1.0, count + 1.0)
-    fits = [_fit(angle[rows], values[rows], repeats, count) for rows in rows_of_loads]
+    fit = _transform if are_even else _fit
+    fits = [fit(angle[rows], values[rows], repeats, count) for rows in rows_of_loads]
     mean, waves = np.array([fit[0] for fit in fits]), np.array([fit[1] for fit in fits])
     return Harmonics(
         loads, orders, mean, waves, _floor(waves), gaps[worst], tuple(_of_gap(angle[rows_of_loads[worst]], gaps[worst], orders))
@@ -134,8 +139,25 @@ def _of_gap(angle: Array, gap: float, orders: Array) -> list[str]:
         remarks.append(
             f"the largest gap between angles is {np.degrees(gap):.3g} deg, the usual one {np.degrees(usual):.3g} deg"
         )
-    why = "half the samples of a turn" if len(orders) < MAX_ORDERS else f"the first {MAX_ORDERS} are looked for"
+    limits = MAX_ORDERS, MAX_ORDERS_OF_UNEVEN
+    why = f"the first {len(orders)} are looked for" if len(orders) in limits else "half the samples of a turn"
     return [*remarks, f"orders up to {orders[-1]:g} are determined ({why}); a higher one would appear as a lower one"]
+
+
+def _is_even(angle: Array, period: float) -> bool:
+    """True if angles cut a period into even steps."""
+    within = np.sort(np.mod(angle, period))
+    steps = np.diff(np.append(within, within[0] + period))
+    return bool(np.ptp(steps) < EVEN_STEP * period / len(angle))
+
+
+def _transform(angle: Array, values: Array, repeats: int, count: int) -> tuple[float, Complex]:
+    """Return the mean and the waves of values at angles that cut a period into even steps."""
+    within = np.mod(angle, tau / repeats)
+    order = np.argsort(within)
+    spectrum = np.fft.rfft(values[order]) / len(values)
+    turn = np.exp(-1j * repeats * within[order[0]] * np.arange(count + 1))
+    return float(spectrum[0].real), 2j * (spectrum[: count + 1] * turn)[1:]
 
 
 def _fit(angle: Array, values: Array, repeats: int, count: int) -> tuple[float, Complex]:

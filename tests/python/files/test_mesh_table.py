@@ -152,3 +152,9 @@ def test_modes_that_cannot_be_are_refused(tmp_path: Path, text: str, reason: str
     (tmp_path / "modes.csv").write_text(text)
     with pytest.raises(ValueError, match=reason):
         ModeTable.read(tmp_path / "modes.csv")
+
+
+def test_a_mesh_stiffness_at_the_output_needs_its_lever(tmp_path: Path) -> None:
+    (tmp_path / "mesh.csv").write_text("angle [deg],torque [N.m],mesh_stiffness [N.m/rad]\n0,1,2\n")
+    with pytest.raises(ValueError, match=r"divide it by \(pitch radius x cos\(pressure angle\)\)\^2"):
+        MeshTable.read(tmp_path / "mesh.csv")

@@ -277,3 +277,10 @@ def test_what_needs_stages_is_refused_without_them() -> None:
         laws.applied_to("hfuc-25-100")
     with pytest.raises(ValueError, match=r"the stages alone have a compliance of .*give stiffer stages"):
         laws.applied_to("hfuc-25-100", stages=STAGES.replace(circular_spline_stiffness=1e4))
+
+
+def test_tooth_passing_orders_come_back() -> None:
+    angle = 2.0 * np.pi * np.arange(1600) / 1600 + 0.003
+    teeth = sw.kinematic_error.Fourier(order=[2, 200, 400], amplitude=[3e-4, 2e-6, 1e-6], phase=[0.5, 1.5, -2.5])
+    found = sw.orders.mesh_laws(MeshTable(angle, np.zeros(1600), transmission_error=teeth.error(angle)))
+    assert same_law(found.kinematic_error, teeth, 1e-9)
