@@ -14,7 +14,7 @@ from strainwave import Gear, arguments, kinematic_error, stiffness, typeset, var
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.mesh_table import MeshTable, ModeTable
-from strainwave.messages import listed, shortened
+from strainwave.messages import shortened
 from strainwave.orders.mesh_application import applied
 from strainwave.orders.mesh_error import ErrorFit, StiffnessVariation, error_fit, spring_by_tangents, twists_of
 from strainwave.orders.mesh_harmonics import Harmonics, harmonics
@@ -244,8 +244,7 @@ def _orders(error: Harmonics, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], lis
     if not len(rest):
         return orders, []
     size = typeset.quantity(float(np.abs(fit.error[rest]).max()), "rad")
-    left = listed(f"{each:g}" for each in error.orders[rest])
-    return orders, [f"a law has {MAX_ERROR_ORDERS} orders; left out: {left}, of up to {size}"]
+    return orders, [f"a law has {MAX_ERROR_ORDERS} orders; {counted(len(rest), 'order')} of up to {size} left out"]
 
 
 def _predicted(table: MeshTable, law: Any, fit: ErrorFit) -> Array:
@@ -298,9 +297,9 @@ def _of_slope(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> I
 
 def _of_noise(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     """Yield a remark on orders that the noise of the solver hides."""
-    left = len(error.orders) - np.count_nonzero(fit.error)
+    left = len(error.orders) - int(np.count_nonzero(fit.error))
     if left and fit.noise > NOISE_OF_ROUNDING * float(np.abs(error.waves).max()):
         yield (
-            f"{counted(int(left), 'order')} of {len(error.orders)} cannot be told from the noise of the solver, "
+            f"{counted(left, 'order')} of {len(error.orders)} cannot be told from the noise of the solver, "
             f"{typeset.quantity(fit.noise, 'rad')} of amplitude, and left out"
         )

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import stiffness, variation
-from strainwave.messages import listed
 from strainwave.orders.mesh_harmonics import Harmonics
 from strainwave.orders.mesh_loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
+from strainwave.presentation import counted
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -75,8 +75,8 @@ class StiffnessVariation:
             order=orders[chosen].tolist(), amplitude=np.abs(waves[chosen]).tolist(), phase=np.angle(waves[chosen]).tolist()
         )
         if len(rest):
-            left = f"{listed(f'{each:g}' for each in orders[rest])}, of up to {float(np.abs(waves[rest]).max()):.2g}"
-            remarks += (f"a variation has {MAX_VARIATION_ORDERS} orders; left out of that of {name}: {left}",)
+            left = f"{counted(len(rest), 'order')} of {name}, of up to {float(np.abs(waves[rest]).max()):.2g} of its mean"
+            remarks += (f"a variation has {MAX_VARIATION_ORDERS} orders; left out: {left}",)
         kept = np.zeros_like(waves)
         kept[chosen] = waves[chosen]
         return cls(kept, law, remarks)

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.messages import listed
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -188,8 +187,3 @@ def _floor(waves: Complex) -> float:
     squares = np.abs(waves) ** 2
     noise = float(np.quantile(squares, FLOOR_QUANTILE)) / -log(1.0 - FLOOR_QUANTILE)
     return max(noise, float(squares.max()) * RELATIVE_ROUNDING**2, 1e-300)
-
-
-def named(orders: Array) -> str:
-    """Return orders in words."""
-    return f"order{'s' if len(orders) > 1 else ''} {listed(f'{order:g}' for order in orders)}"
