@@ -393,9 +393,10 @@ class ModeTable(ComparedByFields, Presented):
         return f"{counted(len(self.frequency), 'mode')} from {ends[0]} to {ends[1]}; {self.source}"
 
     def _rows(self) -> Iterator[Row]:
-        for frequency, waves, damping, mass in zip(self.frequency, self.waves, self.damping, self.mass, strict=True):
-            note = f"damping ratio {damping:.3g}, mass at the mesh {typeset.quantity(float(mass), 'kg')}"
-            yield Row(f"{counted(int(waves), 'wave')}", float(frequency), "Hz", note=note)
+        modes = zip(self.frequency, self.waves, self.damping, self.mass, strict=True)
+        for number, (frequency, waves, damping, mass) in enumerate(modes, 1):
+            of_shape = f"{counted(int(waves), 'wave')}, mass at the mesh {typeset.quantity(float(mass), 'kg')}"
+            yield Row(f"mode {number}", float(frequency), "Hz", note=f"{of_shape}, damping ratio {damping:.3g}")
 
 
 def _positive(shape_squared: Array) -> Array:

@@ -111,7 +111,8 @@ class MeshLaws(ComparedByFields, Pictured):
             note = f"phase {typeset.number(float(np.degrees(each.phase)), 4)}°, {typeset.percent(each.share)} of the squares"
             yield Row(f"order {each.order:g}", each.amplitude, "rad", note=note)
         if isinstance(self.kinematic_error, kinematic_error.Scaled):
-            yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", self.sensitivity_sigma or nan)
+            sigma = self.sensitivity_sigma if self._noisy else nan
+            yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", sigma)
         if self.stiffness is not None:
             for name, kind, unit in ((field["name"], field["kind"], field["unit"]) for field in self.stiffness.fields):
                 yield Row(f"stiffness {name}", getattr(self.stiffness, name), unit, note="" if kind == "number" else kind)
@@ -122,8 +123,14 @@ class MeshLaws(ComparedByFields, Pictured):
                 for order, amplitude in zip(law.order, law.amplitude, strict=True):
                     yield Row(f"{name.replace('_', ' ')}, order {order:g}", amplitude, "1")
         if self.orders:
-            yield Row("noise of an amplitude", self.noise, "rad")
+            if self._noisy:
+                yield Row("noise of an amplitude", self.noise, "rad")
             yield Row("not explained", self.residual, "rad", note="rms")
+
+    @property
+    def _noisy(self) -> bool:
+        """True if the noise of the solver is more than rounding."""
+        return self.noise > NOISE_OF_ROUNDING * max((each.amplitude for each in self.orders), default=0.0)
 
     def plot(self) -> Figure:
         """Return a figure of the amplitudes of the error without load over the order."""
