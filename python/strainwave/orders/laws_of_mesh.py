@@ -16,7 +16,14 @@ from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.mesh_table import MeshTable, ModeTable
 from strainwave.messages import shortened
 from strainwave.orders.mesh_application import applied
-from strainwave.orders.mesh_error import ErrorFit, StiffnessVariation, error_fit, spring_by_tangents, twists_of
+from strainwave.orders.mesh_error import (
+    ErrorFit,
+    StiffnessVariation,
+    error_fit,
+    spring_by_tangents,
+    transmission_error,
+    twists_of,
+)
 from strainwave.orders.mesh_harmonics import Harmonics, harmonics
 from strainwave.presentation import Pictured, Row, counted
 
@@ -256,11 +263,11 @@ def _orders(error: Harmonics, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], lis
 
 def _predicted(table: MeshTable, law: Any, fit: ErrorFit) -> Array:
     """Return the transmission error of the laws [rad], shape (n,)."""
-    error = np.asarray(law.error(table.angle)) / (1.0 + fit.sensitivity * np.abs(table.torque))
+    error = np.asarray(law.error(table.angle))
     if fit.spring is None:
-        return error
-    factor = 1.0 if fit.variation.law is None else np.asarray(fit.variation.law.factor(table.angle))
-    return error + np.asarray(fit.spring.law.twist(table.torque / factor))
+        return np.asarray(error / (1.0 + fit.sensitivity * np.abs(table.torque)) ** 2)
+    factor = np.ones(len(error)) if fit.variation.law is None else np.asarray(fit.variation.law.factor(table.angle))
+    return transmission_error(fit.spring.law, error, fit.sensitivity, factor, table.torque)
 
 
 def _over_loads(of_mesh: Harmonics | None) -> Iterator[str]:

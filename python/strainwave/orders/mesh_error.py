@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,8 @@ MIN_WINDUP_OF_STIFFNESS = 0.05  # of the twist by the column stiffness, likewise
 MAX_DISAGREEMENT = 0.25  # relative, of the column stiffness and the slope of the error: a larger one is a mistake
 NAMED_SPREAD = 0.02  # relative, from which a change with the load is stated
 CONVERGED = 1e-11  # relative change in a round
-ROUNDS = 12  # of the corrections of second order in the variation
+MAX_ITERATIONS = 100  # of the twist under an error that falls
+ROUNDS = 20  # of the corrections beyond the first order
 POINTS_PER_PERIOD = 4  # of the highest order that may vary, at which they are computed
 MIN_POINTS = 1024  # per turn
 
@@ -112,7 +114,7 @@ class ErrorFit:
 def error_fit(error: Harmonics, of_spring: Harmonics | None, given: StiffnessVariation | None, false_alarm: float) -> ErrorFit:
     """Return the fit of the transmission error.
 
-    What the variation does to the twist beyond the first order is computed from the last fit and taken out of the data.
+    What the laws do beyond the first order is computed from the last fit and taken out of the data.
 
     Args:
         error: of the transmission error
@@ -127,19 +129,17 @@ def error_fit(error: Harmonics, of_spring: Harmonics | None, given: StiffnessVar
     spring, fit = _round(error, of_spring, kept, wound, given is None, np.zeros(len(error.torque)), np.zeros_like(error.waves))
     for _ in range(ROUNDS):
         if given is None:
-            waves = np.zeros(len(kept), complex)
-            waves[kept] = fit.variation
-            varying = StiffnessVariation.of_waves("stiffness", error.orders, waves)
-        if spring is None or varying.law is None:
+            varying = StiffnessVariation.of_waves("stiffness", error.orders, _placed(fit.variation, kept))
+        if spring is None or (varying.law is None and fit.sensitivity == 0.0):
             break
-        shift, exact = _twist_waves(spring, error, varying)
-        first = np.outer(-error.torque * spring.compliance(error.torque), varying.waves) if given is None else 0.0
+        shift, beyond = _beyond_first_order(spring, error, _placed(fit.error, kept), fit.sensitivity, varying)
+        if given is not None:
+            beyond += np.outer(-error.torque * spring.compliance(error.torque), varying.waves)
         before = fit
-        spring, fit = _round(error, of_spring, kept, wound, given is None, shift, exact - first)
+        spring, fit = _round(error, of_spring, kept, wound, given is None, shift, beyond)
         if np.allclose([fit.error, fit.variation], [before.error, before.variation], rtol=CONVERGED, atol=0.0):
             break
-    waves = np.zeros(len(kept), complex)
-    waves[kept] = fit.error
+    waves = _placed(fit.error, kept)
     least = max(
         fit.sigma * noise * np.sqrt(log(error.waves.size / false_alarm)), RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0))
     )
@@ -166,16 +166,59 @@ def _round(
     return spring, load_fit(error.torque, compliance, (error.waves - known)[:, kept], noise)
 
 
-def _twist_waves(spring: SpringFit, found: Harmonics, varying: StiffnessVariation) -> tuple[Array, Complex]:
-    """Return what a variation of the stiffness adds to mean, shape (m,), and waves, shape (m, h), of the twist of each load."""
+def _placed(waves: Complex, kept: NDArray[np.bool_]) -> Complex:
+    """Return waves of the orders that are kept among those of all orders."""
+    placed = np.zeros(len(kept), complex)
+    placed[kept] = waves
+    return placed
+
+
+def _beyond_first_order(
+    spring: SpringFit, found: Harmonics, error: Complex, sensitivity: float, varying: StiffnessVariation
+) -> tuple[Array, Complex]:
+    """Return what the laws have beyond the first order: of the means, shape (m,), and of the waves, shape (m, h)."""
     points = max(MIN_POINTS, POINTS_PER_PERIOD * int(found.orders[-1]))
-    present = np.flatnonzero(varying.waves)
     angle = 2.0 * np.pi * np.arange(points) / points
-    factor = 1.0 + np.imag(np.exp(1j * np.outer(angle, found.orders[present])) @ varying.waves[present])
-    twist = np.array([spring.law.twist(torque / factor) for torque in found.torque.tolist()])
-    spectrum = np.fft.rfft(twist, axis=1) / points
-    even = np.array([spring.law.twist(torque) for torque in found.torque.tolist()])
-    return spectrum[:, 0].real - even, 2j * spectrum[:, found.orders.astype(int)]
+    of_error, of_stiffness = (_sum_of_waves(angle, found.orders, waves) for waves in (error, varying.waves))
+    exact = np.array(
+        [
+            transmission_error(spring.law, of_error, sensitivity, 1.0 + of_stiffness, np.full(points, load))
+            for load in found.torque.tolist()
+        ]
+    )
+    spectrum = np.fft.rfft(exact, axis=1) / points
+    fall = (1.0 + sensitivity * np.abs(found.torque)) ** -2.0
+    first = np.outer(fall, error) - np.outer(found.torque * spring.compliance(found.torque), varying.waves)
+    even = np.array([spring.law.twist(load) for load in found.torque.tolist()])
+    return spectrum[:, 0].real - even, 2j * spectrum[:, found.orders.astype(int)] - first
+
+
+def _sum_of_waves(angle: Array, orders: Array, waves: Complex) -> Array:
+    present = np.flatnonzero(waves)
+    return np.asarray(np.imag(np.exp(1j * np.outer(angle, orders[present])) @ waves[present]))
+
+
+def transmission_error(law: Any, error: Array, sensitivity: float, factor: Array, torque: Array) -> Array:
+    """Return the transmission error of a gear at rest under loads, as Gear has it with Scaled and a variation of the stiffness.
+
+    Args:
+        law: the spring
+        error: kinematic error without load [rad], shape (n,)
+        sensitivity: relative fall of it with the torque [1/(N.m)]
+        factor: of the stiffness [1], shape (n,)
+        torque: of the load [N.m], shape (n,)
+    """
+    twist = np.asarray(law.twist(torque / factor))
+    if sensitivity == 0.0:
+        return error + twist
+    for _ in range(MAX_ITERATIONS):
+        spring = np.asarray(law.torque(twist))
+        fall = 1.0 / (1.0 + sensitivity * np.abs(spring))
+        per_twist = -error * sensitivity * np.sign(spring) * fall**2 * np.asarray(law.tangent(twist))
+        before, twist = twist, np.asarray(law.twist(torque * (1.0 + per_twist) / factor))
+        if np.abs(twist - before).max() <= CONVERGED * np.abs(twist).max():
+            break
+    return error * fall + twist
 
 
 def spring_by_tangents(found: Harmonics) -> SpringFit:

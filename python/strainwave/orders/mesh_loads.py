@@ -3,9 +3,12 @@ r"""Spring of a gear, and how its orders change with the load, by the harmonics 
 With e the complex amplitudes of the kinematic error without load, v those of the relative variation of the stiffness, c the
 compliance at the load,
 
-.. math:: c_{hj} = \frac{e_h}{1 + \kappa_T |T_j|} - T_j \, c(T_j) \, v_h
+.. math:: c_{hj} = \frac{e_h}{(1 + \kappa_T |T_j|)^2} - T_j \, c(T_j) \, v_h
 
-The first term is even in the torque. At loads of one sign both terms differ in their curvature alone.
+The square is that of an error that falls by r = 1 / (1 + kappa_T |T|) and conserves energy (kinematic_error.Scaled): as the
+error falls with the torque of the spring, the spring bears T (1 + k e dr/dT) under a load T, with k its stiffness. To the first
+order the transmission error is then e (r + T dr/dT) + T / k. The first term of the sum is even in the torque. At loads
+of one sign both terms differ in their curvature alone.
 """
 
 from __future__ import annotations
@@ -153,7 +156,7 @@ class _Model:
     def slope(self, torque: Array) -> tuple[Complex, Complex]:
         """Return the change of the waves with the sensitivity: what the coefficients make up of it, and what they do not."""
         level = np.abs(torque)
-        slope = np.outer(-level / (1.0 + self.sensitivity * level) ** 2, self.coefficients[0])
+        slope = np.outer(-2.0 * level / (1.0 + self.sensitivity * level) ** 3, self.coefficients[0])
         made_up = solved(self.columns, slope)
         return made_up, slope - self.columns @ made_up
 
@@ -235,7 +238,7 @@ def _model(torque: Array, varying: Array | None, waves: Complex, noise: float, *
     others = [] if varying is None else [varying]
 
     def solution(sensitivity: float) -> tuple[float, Array, Complex]:
-        columns = np.column_stack([1.0 / (1.0 + sensitivity * np.abs(torque)), *others])
+        columns = np.column_stack([(1.0 + sensitivity * np.abs(torque)) ** -2.0, *others])
         coefficients = solved(columns, waves)
         return float(np.sum(np.abs(waves - columns @ coefficients) ** 2)), columns, coefficients
 
