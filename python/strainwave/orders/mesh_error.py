@@ -210,7 +210,7 @@ def transmission_error(law: Any, error: Array, sensitivity: float, factor: Array
     """
     twist = np.asarray(law.twist(torque / factor))
     if sensitivity == 0.0:
-        return error + twist
+        return np.asarray(error + twist)
     for _ in range(MAX_ITERATIONS):
         spring = np.asarray(law.torque(twist))
         fall = 1.0 / (1.0 + sensitivity * np.abs(spring))
@@ -218,7 +218,7 @@ def transmission_error(law: Any, error: Array, sensitivity: float, factor: Array
         before, twist = twist, np.asarray(law.twist(torque * (1.0 + per_twist) / factor))
         if np.abs(twist - before).max() <= CONVERGED * np.abs(twist).max():
             break
-    return error * fall + twist
+    return np.asarray(error * fall + twist)
 
 
 def spring_by_tangents(found: Harmonics) -> SpringFit:
