@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import Gear, structure
+from strainwave import Gear, ring, structure
 from strainwave.files.gear_set import GearSet
 from strainwave.files.units import convert
 from strainwave.parameters import every
@@ -35,7 +35,9 @@ def series_compliance(gear: Gear) -> float:
     radial displacements times tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear
     one torque,
 
-        tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG).
+        tan² alpha_t / (K_b r_g²) + (1 / K_m + sum_k 1 / (m_k omega_k²)) / (r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG),
+
+    with the modes of the ring as the wave generator stands.
 
     >>> import strainwave as sw
     >>> gear = sw.GearSet.read("tilt-actuator").gear
@@ -47,7 +49,9 @@ def series_compliance(gear: Gear) -> float:
         return 0.0
     radius, slope = stages.pitch_radius, float(np.tan(stages.pressure_angle))
     bearing = slope**2 / (stages.bearing_stiffness * radius**2)
-    mesh = (1.0 + slope**2) / (stages.mesh_stiffness * radius**2)
+    modes = zip(stages.ring.mass, stages.ring.natural_frequency, strict=True) if isinstance(stages.ring, ring.Modes) else ()
+    along_mesh = 1.0 / stages.mesh_stiffness + sum(1.0 / (mass * frequency**2) for mass, frequency in modes)
+    mesh = (1.0 + slope**2) * along_mesh / radius**2
     coupling = 1.0 / (stages.coupling_stiffness * gear.kinematics.ratio**2)
     return bearing + mesh + 1.0 / stages.circular_spline_stiffness + coupling
 

@@ -11,7 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 from strainwave.analysis.torsion_loop import series_compliance
-from strainwave.files import MeshTable
+from strainwave.files import MeshTable, ModeTable
 
 Array = NDArray[np.float64]
 
@@ -310,10 +310,50 @@ def test_the_variation_of_a_staged_gear_is_that_of_the_table() -> None:
     assert np.abs(rest + mesh + spring - whole).max() < 0.15 * np.abs(whole - whole.mean()).max()  # to first order
 
 
+MODES = ModeTable(frequency=[1850.0, 4000.0], waves=[0, 0], damping=[0.01, 0.01], mass=[0.6, 0.9], source="modes.csv")
+
+
+def test_modes_of_the_ring_are_in_the_stages_and_leave_the_whole_compliance_as_it_is() -> None:
+    given = table(BOTH_SENSES, variation=None)
+    assert given.transmission_error is not None
+    stages = STAGES.replace(coupling_damping=0.5, bearing_damping=2e3, mesh_damping=2e3, circular_spline_damping=5.0)
+    after = sw.orders.mesh_laws(given).applied_to("hfuc-25-100", stages=stages, modes=MODES)
+    ring = after.gear.structure.ring
+    assert ring.natural_frequency == pytest.approx(2.0 * np.pi * MODES.frequency)
+    assert after.sources["gear.structure.ring.mass[0]"].source == "computed: finite-element table modes.csv"
+    assert after.sources["gear.structure.mesh_stiffness"].assumed
+    gear = after.gear.replace(hysteresis=sw.Gear().hysteresis)
+    drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.05))
+    for angle in (0.0, np.radians(45.0)):
+        start = {"input_angle": angle, "input_speed": 0.0}
+        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.02), dt=4e-6, load_torque=20.0, initial=start)
+        expected = given.transmission_error[(given.torque == 20.0) & np.isclose(given.angle, angle)]
+        assert float(run["transmission_error"][-1]) == pytest.approx(float(expected[0]), rel=1e-9)
+
+
+def test_of_more_modes_than_a_ring_has_the_most_compliant_are_taken(tmp_path: Path) -> None:
+    mass = np.array([0.6, 50.0, 0.9, 2.0, 2.5])
+    many = ModeTable(frequency=[1850.0, 2000.0, 4000.0, 4500.0, 5000.0], waves=np.zeros(5), damping=np.full(5, 0.01), mass=mass)
+    assert many.ring.mass == (0.6, 0.9, 2.0, 2.5)
+    assert many.left_out == ["a ring has 4 modes; left out: 2000 Hz, with 0.83 % of the compliance of all"]
+    after = sw.orders.mesh_laws(table(BOTH_SENSES)).applied_to("hfuc-25-100", stages=STAGES, modes=many)
+    assert after.note.endswith("left out: 2000 Hz, with 0.83 % of the compliance of all")
+    after.save(tmp_path / "gear.toml")
+    assert sw.GearSet.read(tmp_path / "gear.toml") == after
+
+
+def test_modes_of_a_ring_that_no_wave_generator_holds_are_refused() -> None:
+    free = ModeTable(frequency=[1056.0], waves=[2], damping=[0.014], mass=[0.028])
+    with pytest.raises(ValueError, match=r"the stages alone have a compliance of .* more than .* of the whole gear"):
+        sw.orders.mesh_laws(table(BOTH_SENSES)).applied_to("hfuc-25-100", stages=STAGES, modes=free)
+
+
 def test_what_needs_stages_is_refused_without_them() -> None:
     laws = sw.orders.mesh_laws(with_mesh(4e8))
     with pytest.raises(ValueError, match="mesh_stiffness needs a gear of stages"):
         laws.applied_to("hfuc-25-100")
+    with pytest.raises(ValueError, match="modes need a gear of stages"):
+        sw.orders.mesh_laws(table(BOTH_SENSES)).applied_to("hfuc-25-100", modes=MODES)
     with pytest.raises(ValueError, match=r"the stages alone have a compliance of .*give stiffer stages"):
         laws.applied_to("hfuc-25-100", stages=STAGES.replace(circular_spline_stiffness=1e4))
 
