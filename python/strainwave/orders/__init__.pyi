@@ -1,4 +1,5 @@
 from .campbell_diagram import Campbell as Campbell, campbell as campbell
+from .laws_of_mesh import MeshLaws as MeshLaws, mesh_laws as mesh_laws
 from .order_spectrum import (
     BearingOrders as BearingOrders,
     Orders as Orders,
