@@ -29,6 +29,7 @@ void bind_gear_laws(nb::module_& core) {
                 "outer_speed: float) -> tuple[float, float, float, float]"),
         "Orders of cage, outer ring, inner ring and ball of a bearing, over its inner ring.");
     bind_family<NoVerbs>(core, "structure", "Bodies within a gear that have their own motion.", structure::Models{});
+    bind_family<MaterialVerbs>(core, "material", "Torque of a gear that relaxes over time.", material::Models{});
     bind_family<NoVerbs>(core, "softening", "Fall of stiffness and hysteresis with the temperature.", softening::Models{});
 }
 
