@@ -47,10 +47,13 @@ SW_WITHIN(stiffness::TwoSided, stiffness::Plain)
 SW_WITHIN(stiffness::Backlash, stiffness::Sided)
 SW_WITHIN(kinematic_error::TemperatureDependent, kinematic_error::Pure)
 SW_WITHIN(kinematic_error::Scaled, kinematic_error::Unloaded)
-SW_WITHIN(structure::Staged, variation::Models)
 SW_WITHIN(hysteresis::Preisach, hysteresis::Densities)
 SW_WITHIN(compensation::BristleObserver, friction::Models)
 #undef SW_WITHIN
+template <class S, class Ring, class Variation>
+struct AtRunTime<S, structure::Staged<S, Ring, Variation>> {
+    using type = structure::Staged<S, AnyOf<S, ring::Models>, AnyOf<S, variation::Models>>;
+};
 
 }  // namespace detail
 

@@ -311,7 +311,7 @@ struct Drive {
     // Bodies within the gear and both shafts, as one block.
 
     static constexpr int coupled_count = coupled_bodies::count<S, Gear, Structure>;
-    using Coupled = Array<S, (coupled_count > 0 ? coupled_count : 1)>;
+    using Coupled = coupled_bodies::Numbers<S, Gear, Structure>;
     constexpr bool couples() const { return !gear.structure.rigid(); }
     constexpr Coupled coupled(const Continuous& y) const { return coupled_bodies::numbers<S, Drive>(y); }
     constexpr void set_coupled(Continuous& y, const Coupled& z) const { coupled_bodies::set_numbers<S, Drive>(y, z); }

@@ -31,6 +31,7 @@ from ._core import (
     meter as meter,
     motor as motor,
     onset as onset,
+    ring as ring,
     sensor as sensor,
     softening as softening,
     stiffness as stiffness,
