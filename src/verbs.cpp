@@ -325,7 +325,7 @@ Values over_time(const BoundLaw& of, const void* model, const Call& call, F&& va
     const auto time = steps_of(call["time"], "time", "s"), twist = steps_of(call["twist"], "twist", "rad");
     if (time.size() != twist.size()) throw nb::value_error("time and twist must have the same length");
     const auto law = single_law<Material>(of, model);
-    auto x = law.part.initial_state();
+    auto x = state_in<Material::State>(of, call);
     auto [out, y] = like(time);
     for (std::size_t i = 0; i < time.size(); ++i) {
         let_interrupt(i);
@@ -343,10 +343,12 @@ Values over_time(const BoundLaw& of, const void* model, const Call& call, F&& va
 
 void material_verbs(const BoundLaw& of) {
     using State = Material::State;
-    const std::vector<Accepted> course{{"time", SW_NUMBERS}, {"twist", SW_NUMBERS}};
+    std::vector<Accepted> course{{"time", SW_NUMBERS}, {"twist", SW_NUMBERS}};
+    if (of.state) course.push_back({"state", "State", "..."});
     define_verb(of.type, of.description, "trace", course, SW_ARRAY,
                 "Return the torque [N.m], shape (n,), over `time` [s] and `twist` [rad], both of shape (n,).\n\n"
-                "Without history at the first instant. Exact for a rate that is constant between samples, whatever the step.",
+                "The history starts with `state` at the first instant; without it there is none. Exact for a rate that is constant "
+                "between samples, whatever the step.",
                 [of](const void* model, const Call& call) -> nb::object {
                     return nb::cast(over_time(of, model, call, [](const Material& m, State& x, double increment, double dt) {
                         x = m.advance(x, increment, dt);

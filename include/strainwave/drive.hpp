@@ -324,7 +324,7 @@ struct Drive {
         return coupled_bodies::side<S>(*this, x, after, dt, fraction);
     }
     constexpr structure::Generator<S> generator(const State& x) const {
-        return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous, S(room_temperature)));
+        return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous, Input{}));
     }
     /// Bodies of the vibration of a gear whose spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {

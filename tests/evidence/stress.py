@@ -34,7 +34,7 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import METHOD_WORDS
 from strainwave.simulation.signals import load_input, outputs
 
-from tests.laws.test_gear import has_memory, passive, speeds
+from tests.laws.test_gear import has_memory, passive, speeds, steady
 from tests.support.strategies import AROUND_ONE, SUITED, TYPICAL, Field, kinds_of, suited
 from tests.support.workers import answers
 
@@ -240,8 +240,7 @@ def check_powers(drive: sw.Drive, run: sw.Recording) -> None:
 def known_speeds(gear: sw.Gear, run: sw.Recording) -> Mapping[str, NDArray[np.float64]]:
     """Those of the mesh only where the slope of the error is told by the angle, and that to more than rounding."""
     noise = gear.kinematic_noise
-    varies = noise.active and (noise.load_sensitivity != 0.0 or noise.speed_sensitivity != 0.0)
-    if varies or np.abs(run["input_angle"]).max() > FARTHEST:
+    if not steady(noise) or np.abs(run["input_angle"]).max() > FARTHEST:
         return {"friction_input": run["input_speed"], "friction_output": run["output_speed"]}
     return speeds(gear, run)
 

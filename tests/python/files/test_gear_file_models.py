@@ -69,9 +69,9 @@ def without(text: str, table: str, name: str) -> str:
 # By default a motor is healthy: its file need not deny each fault.
 MAY_BE_LEFT_OUT = {
     "dc": {"cogging_torque", "cogging_order"},
-    "brushless_dc": {"cogging_torque", "cogging_order"},
+    "brushless_dc": {"cogging_torque", "cogging_order", "open_share", "shorted_share"},
     "cyclic": {"viscous_share", "detent_order", "detent_torque", "detent_phase"},
-    "pmsm": {"phase_resistance_excess", "dead_time_voltage", "dead_time_current"},
+    "pmsm": {"phase_resistance_excess", "dead_time_voltage", "dead_time_current", "open_share", "shorted_share"},
 }
 
 

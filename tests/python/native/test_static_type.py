@@ -88,7 +88,8 @@ def test_the_type_is_that_of_the_laws() -> None:
         "strainwave::hysteresis::Preisach<float, strainwave::hysteresis::PowerDensity<float>>, "
         "strainwave::friction::Thermal<float, strainwave::friction::LuGre<float>>, strainwave::friction::Viscous<float>, "
         "strainwave::friction::Viscous<float>, strainwave::softening::ThermalSoftening<float>, "
-        "strainwave::structure::Lumped<float>, strainwave::variation::Constant<float>>, strainwave::load::Pendulum<float>, "
+        "strainwave::structure::Lumped<float>, strainwave::variation::Constant<float>, strainwave::material::Elastic<float>>, "
+        "strainwave::load::Pendulum<float>, "
         "strainwave::Sensors<float, strainwave::sensor::Ideal<float>>, strainwave::thermal::Isothermal<float>, "
         "strainwave::meter::EnergyMeter<float>>"
     )
