@@ -32,7 +32,7 @@ from strainwave.rig.vision.image import (
 from strainwave.rig.vision.marker import Frame, Marker, look
 from strainwave.statistics.linear_fit import solved
 
-Source = str | Path | Image | NDArray[Any]
+Source = str | Path | Image
 Array = NDArray[np.float64]
 _MAX_RELATIVE_DIFFERENCE = 0.05  # of radii or distances by errors of measurement or a tilted view [1]
 _HALF_TURN_MARGIN = 15.0  # degrees before the turn at which its direction is ambiguous
@@ -44,7 +44,7 @@ _MAX_TILT_ERROR_SIGMA = 10.0  # error of an angle by the tilt of the camera, in 
 
 
 def measure_angles(
-    images: Source | Iterable[Source],
+    images: Source | Iterable[Source | NDArray[Any]],
     *,
     camera: Camera = PERFECT,
     reference: str | None = None,
@@ -90,7 +90,7 @@ def measure_angles(
     return follow(frames, camera=camera, reference=reference)
 
 
-def _sources(images: Source | Iterable[Source]) -> Iterator[Source]:
+def _sources(images: Source | Iterable[Source | NDArray[Any]]) -> Iterator[Source]:
     if isinstance(images, Image):
         yield images
     elif isinstance(images, str | Path):
