@@ -16,7 +16,9 @@ void bind_gear_laws(nb::module_& core) {
     bind_list<HysteresisVerbs>(core, hysteresis, "hysteresis", strainwave::hysteresis::Models{});
     bind_family<VariationVerbs>(core, "variation", "Variation of a stiffness with the angle of the wave generator.",
                                 variation::Models{});
+    bind_family<NoVerbs>(core, "ring", "Vibration of the flexspline's ring, which the mesh drives.", ring::Models{});
     bind_family<NoVerbs>(core, "structure", "Bodies within a gear that have their own motion.", structure::Models{});
+    bind_family<MaterialVerbs>(core, "material", "Torque of a gear that relaxes over time.", material::Models{});
     bind_family<NoVerbs>(core, "softening", "Fall of stiffness and hysteresis with the temperature.", softening::Models{});
 }
 

@@ -25,6 +25,7 @@ SOURCES = [
 
 # Where else a model is named, and why it must be.
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
+OF_EACH_RING = "whose state depends on the vibration of the ring, so that each is a law of its own"
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 REACHED = "a log reaches some of the segments that a gear has, the first of them as one line"
@@ -91,9 +92,12 @@ ELSEWHERE = {
     "Staged": {
         "identification/experiments/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
         "parameter_drive.hpp": BOUND_TO_ANY,
+        "general/structure.cpp": OF_EACH_RING,
         "diagnose/actuator_ramp.py": SERIES,
     },
+    "Rigid": {"structure/staged.hpp": DEFAULT},
     "Lumped": {
+        "general/structure.cpp": OF_EACH_RING,
         "analysis/output_torque.py": SHAFTS_ALONE,
         "gear.hpp": DEFAULT,
         "native/kernels.py": "bodies within the gear make a step too long to be inlined",

@@ -49,7 +49,9 @@ SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 # Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
 # not; instants of sampling, which all members share and which nothing is derived by; and what is counted.
-SHARED = re.compile(rf"\.({'|'.join(sorted(COUNTED_NAMES))})$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
+SHARED = re.compile(
+    rf"\.({'|'.join(sorted(COUNTED_NAMES))})(\[\d+\])?$|\.order\[|\.density\.exponent$|^control\.(period|delay)$"
+)
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -66,6 +68,13 @@ def number(field: Field, random: np.random.Generator) -> float:
     return magnitude(field["unit"], field["min"], field["max"], zero, random)
 
 
+def element(field: Field, random: np.random.Generator) -> float:
+    """A number, or one of a sequence."""
+    if field["whole"]:
+        return int(random.integers(int(field["min"]), min(int(field["max"]), 1000) + 1))
+    return number(field, random)
+
+
 def value(field: Field, length: int, random: np.random.Generator) -> Any:
     match field["kind"]:
         case "part":
@@ -73,12 +82,10 @@ def value(field: Field, length: int, random: np.random.Generator) -> Any:
             return model(options[random.integers(len(options))], random)
         case "choice":
             return field["options"][random.integers(len(field["options"]))]
-        case "count":
-            return int(random.integers(int(field["min"]), min(int(field["max"]), 1000) + 1))
         case "sequence":
-            return [number(field, random) for _ in range(length)]
+            return [element(field, random) for _ in range(length)]
         case _:
-            return number(field, random)
+            return element(field, random)
 
 
 def model(kind: Any, random: np.random.Generator) -> Any:

@@ -64,10 +64,11 @@ NOT_CALLED = {
     *(f"files.entries.{name}" for name in ("elements", "checked", "inline", "origin_lines", "numbers_of")),
     "files.gear_set.spelled",
     "sw.compensate",  # compiles a kernel, and searches for minutes
+    "analysis.torsion_loop.series_compliance",
     *(f"parameters.{name}" for name in ("unknown", "every", "parameters", "Parameter", "replaced", "plain")),
     *(f"identification.experiments.experiment.{name}" for name in ("Experiment", "Nuisance", "sensible", "changing")),
     *(f"identification.experiments.friction_table.{name}" for name in ("FrictionTable", "with_load")),
-    *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input", "series_compliance")),
+    *(f"identification.experiments.torsion_loop.{name}" for name in ("TorsionLoop", "at_input")),
     *(f"identification.experiments.drive_log.{name}" for name in ("DriveLog", "DrivenLog", "driven")),
     *(f"drive_log.DriveLog.{name}" for name in ("beginning", "stands_still")),
     *(f"{name}.predict" for name in ("drive_log.DriveLog", "friction_table.FrictionTable", "torsion_loop.TorsionLoop")),

@@ -156,6 +156,15 @@ def of_wear() -> Iterator[Any]:
     yield from (shares, shares["gear, dry"])
 
 
+def of_mesh() -> Iterator[Any]:
+    """Yield tables of finite elements, and the laws of a gear by them."""
+    angle, torque = (each.ravel() for each in np.meshgrid(np.radians(np.arange(0.0, 360.0, 10.0)), [-20.0, 0.0, 20.0]))
+    error = 3e-4 * np.sin(2.0 * angle) / (1.0 + 0.02 * np.abs(torque)) + torque / 3e4
+    table = sw.files.MeshTable(angle, torque, transmission_error=error, mesh_stiffness=4e8 + 1e7 * np.sin(2.0 * angle))
+    yield from (table, sw.orders.mesh_laws(table))
+    yield sw.files.ModeTable(frequency=[1800.0, 2100.0], waves=[0, 0], damping=[0.01, 0.01], mass=[0.5, 0.8])
+
+
 def of_rig() -> Iterator[Any]:
     """Yield what the torsion rig measures and computes."""
     bench = sw.rig.load("couple-rig")
@@ -179,7 +188,7 @@ def of_rig() -> Iterator[Any]:
 @cache
 def results() -> Mapping[str, Any]:
     """Return a result of each type, by the name of the type."""
-    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_wear, of_rig) for each in kind())
+    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_wear, of_mesh, of_rig) for each in kind())
     return {type(each).__name__: each for each in everything}
 
 

@@ -131,7 +131,8 @@ def values(field: Field, length: int) -> st.SearchStrategy[Any]:
         case "count":
             return st.integers(int(field["min"]), int(field["max"]))
         case "sequence":
-            return st.lists(numbers(field), min_size=length, max_size=length)
+            element = st.integers(int(field["min"]), int(field["max"])) if field["whole"] else numbers(field)
+            return st.lists(element, min_size=length, max_size=length)
         case _:
             return numbers(field)
 
