@@ -18,6 +18,7 @@ void bind_gear_laws(nb::module_& core) {
                                 variation::Models{});
     bind_family<NoVerbs>(core, "ring", "Vibration of the flexspline's ring, which the mesh drives.", ring::Models{});
     bind_family<NoVerbs>(core, "structure", "Bodies within a gear that have their own motion.", structure::Models{});
+    bind_family<MaterialVerbs>(core, "material", "Torque of a gear that relaxes over time.", material::Models{});
     bind_family<NoVerbs>(core, "softening", "Fall of stiffness and hysteresis with the temperature.", softening::Models{});
 }
 

@@ -7,6 +7,7 @@
 #include <strainwave/kinematics.hpp>
 #include <strainwave/list.hpp>
 #include <strainwave/load/models.hpp>
+#include <strainwave/material/models.hpp>
 #include <strainwave/meter/models.hpp>
 #include <strainwave/motor/models.hpp>
 #include <strainwave/ring/models.hpp>

@@ -27,6 +27,7 @@ from ._core import (
     kinematic_error as kinematic_error,
     kinematics as kinematics,
     loads as loads,
+    material as material,
     meter as meter,
     motor as motor,
     onset as onset,

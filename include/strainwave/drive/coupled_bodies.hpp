@@ -62,7 +62,7 @@ constexpr typename Drive::Coupled rate(const Drive& drive, const Array<S, 2>& mo
     typename Drive::Continuous y{};
     y.structure = initial_state(drive.gear.structure);
     set_numbers<S, Drive>(y, z);
-    const auto even = drive.gear.even_reaction(y.structure, drive.gear_shafts(typename Drive::State{}, y));
+    const auto even = drive.gear.even_reaction(y.structure, drive.gear_shafts(typename Drive::State{}, y, S(room_temperature)));
     typename Drive::Continuous rate{};
     rate.input_speed = -moves[0] * even.input_torque / drive.input_inertia();
     rate.transmission_error = y.input_speed * drive.gear.kinematics.inverse_ratio() - y.output_speed;

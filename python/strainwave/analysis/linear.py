@@ -68,7 +68,7 @@ def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
     for name, part in whole.items():
         while isinstance(part, (sensor.Noisy, sensor.Quantised)):
             part = part.law
-        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder) else part
+        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder | sensor.SineCosineEncoder) else part
     if changed := [name for name, part in whole.items() if smooth[name] is not part]:
         yield (
             "sensors",

@@ -436,6 +436,7 @@ def _left_out(gear: Gear, torque: float) -> Iterator[str]:
         ("softening", "softening of the spring with temperature"),
         ("stiffness_variation", "variation of the stiffness with the angle"),
         ("structure", "stages of the compliance"),
+        ("material", "internal damping of the material"),
     ):
         if getattr(gear, name) != getattr(default, name):
             yield words

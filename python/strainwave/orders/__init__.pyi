@@ -1,3 +1,4 @@
+from .bearing_candidates import BearingCandidates as BearingCandidates, bearing_candidates as bearing_candidates
 from .campbell_diagram import Campbell as Campbell, campbell as campbell
 from .laws_of_mesh import MeshLaws as MeshLaws, mesh_laws as mesh_laws
 from .order_spectrum import (
@@ -11,5 +12,6 @@ from .over_temperature import (
     ErrorOverTemperature as ErrorOverTemperature,
     error_over_temperature as error_over_temperature,
 )
+from .ring_modes import RingMode as RingMode, RingModes as RingModes, ring_modes as ring_modes
 from .torque_ripple import Ripple as Ripple, ripple as ripple
 from .two_encoders import TransmissionError as TransmissionError

@@ -103,6 +103,13 @@ class Recognised(Presented):
     left_out: tuple[str, ...] = ()
     parts: tuple[Path, ...] = ()
 
+    @property
+    def temperature(self) -> float:
+        """Mean temperature of the file, or as given with it [K]; not a number if unknown."""
+        if "temperature" in self.recording:
+            return float(np.mean(self.recording.values("temperature", "K")))
+        return self.constants.get("temperature", np.nan)
+
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
         recording = self.recording

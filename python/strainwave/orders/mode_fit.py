@@ -1,0 +1,655 @@
+r"""Fit of resonances to complex amplitudes of orders over the speed of a shaft, by variable projection.
+
+The wave generator of a strain wave gear presses on the ring at its lobes, at the angle θ. A mode of the ring with n waves, driven
+by a force F that goes round with the lobes, is a vector z in the plane of its two shapes, with the displacement u at the lobes
+
+.. math:: \ddot z + 2 \zeta \omega_0 \dot z + \omega_0^2 z = \omega_0^2 F e^{j n \theta}, \qquad
+          u = \mathrm{Re} (z e^{-j n \theta}).
+
+Of a force of order q, F = Re(f exp(j q θ)), the answer has order q as well, and it is resonant at two speeds,
+
+.. math:: u = \mathrm{Re} \Bigl(\tfrac{f}{2} \bigl[H((q + n) \Omega) + H((q - n) \Omega)\bigr] e^{j q \theta}\Bigr), \qquad
+          H(\omega) = \frac{1}{1 - (\omega / \omega_0)^2 + 2 j \zeta \omega / \omega_0}.
+
+In the frame of the lobes such a mode has two lines, ω0 + n Ω and ω0 - n Ω: order q is resonant where q Ω meets a line. A mode that
+does not travel (torsion, a housing, or a ring that the lobes hold firmly) has n = 0; a ring that they hold softly has slopes
+between. So the fit is of lines, with real slopes s:
+
+.. math:: X_q(\Omega) = b_q + c_q \Omega^2 + \sum_k g_{qk} H_k((q - s_k) \Omega).
+
+Of one order the peak at Ωp determines (q - s) Ωp = ω0 alone, of two orders s and ω0. Of a sensor that stands on the ring s = 0, and
+the mobility is a second column, so that forces that grow with the speed squared are covered.
+
+Coefficients are linear; of each line only the orders count that it makes more probable. Lines are compared by the evidence with
+normal priors of the coefficients, whose scale is that of the amplitudes (Bishop, "Pattern recognition and machine learning"
+(2006), section 3.5). In a run-up each answer is integrated in time, as a resonance comes later than its force.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import log, tau
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from strainwave.orders.orders_over_speed import OrdersOverSpeed
+from strainwave.statistics.residuals import correlation_length
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MAX_SLOPE = 8.0  # of a line over the speed: of rings that are pressed at two lobes
+SEARCH_SLOPES = tuple(range(-6, 7))
+SLOPE_PRIOR = 4.0  # standard deviation of the slope, where orders do not determine it
+DAMPING_BOUNDS = (5e-4, 0.4)  # of critical damping
+SEARCH_DAMPINGS = (0.006, 0.02, 0.06)  # of critical damping, in the search of first values
+SEARCH_STEP_SHARE = 0.7  # of the damping, from one frequency of the search to the next
+SAME_START = 0.03  # of the frequency, between first values of the same slope
+MAX_SEARCH_SPEEDS = 120  # stretches, that first values are searched in
+LEAKING_SHARE = 1e-3  # of the change of an amplitude between stretches, that other orders get
+BASE_PRIOR = 30.0  # of what passes by the lines, over the root mean square of an order
+MAX_SEARCH_STEPS = 20  # of a fit: what needs more is no peak
+MAX_STARTS = 5  # first values that are fitted for a further line
+MAX_EVIDENCE_LAG = 40.0  # of the natural logarithm of the odds, by which the search may be worse than its best to be fitted
+MIN_ORDER_EVIDENCE = 4.0  # natural logarithm of the odds, from which an order counts for a line
+MIN_EVIDENCE_OF_MODE = 10.0  # natural logarithm of the odds of one line more
+MAX_MODES = 8
+MAX_ROUNDS = 4  # of adding and exchanging modes
+MIN_LEAD_OF_RIVAL = 2.0  # natural logarithm of the odds, from which a mode is exchanged
+MAX_FROM_WHOLE = 0.12  # of a slope, that counts as whole
+WHOLE_SLOPE_ODDS = 20.0  # of a slope of a whole number of waves to another one that fits as well (assumed)
+MIN_SLOPE_GAP = 0.5  # between the slopes of rivals
+MIN_SLOPE_OF_BOTH = 0.3  # from which both lines of a mode are separate
+MIN_SIGNIFICANCE = 4.0  # standard deviations of the coefficient of an order that a line acts on
+MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
+SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
+MAX_KEPT_ANSWERS = 64  # of lines: a derivative changes one of several
+MAX_STEPS = 2**14  # of time, in a run-up
+STEPS_PER_STRETCH = 8.0  # of time, in the shortest stretch
+
+
+class Line(NamedTuple):
+    """A mode as lines of resonance over the speed.
+
+    Attributes:
+        frequency: of the shaft at rest [rad/s]
+        damping: as a share of the critical one [1]
+        slope: of its first line over the speed [1]; the second one has the opposite slope
+        acts_on: orders whose coefficient is not zero, of the first line and then of the second one
+    """
+
+    frequency: float
+    damping: float
+    slope: float
+    acts_on: tuple[bool, ...]
+
+    @property
+    def acts(self) -> NDArray[np.bool_]:
+        """Orders that each of both lines acts on, shape (orders, 2)."""
+        return np.array(self.acts_on).reshape(2, -1).T
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fit of some lines.
+
+    Attributes:
+        lines: of it
+        evidence: natural logarithm of the probability of the amplitudes, up to a constant of the spectrum
+        covariance: of the logarithms of frequency and damping and of the slope, one line after the other, (3 lines, 3 lines)
+        parts: coefficients of each order, of both lines of each mode, shape (orders, lines, 2)
+        parts_sigma: their standard deviations, shape (orders, lines, 2)
+        amplitude: of the model, shape (orders, stretches)
+        noise: standard deviation of an amplitude of a stretch of mean length, shape (orders,)
+        correlated: stretches over which the residual is correlated, shape (orders,)
+    """
+
+    lines: tuple[Line, ...]
+    evidence: float
+    covariance: Array
+    parts: Complex
+    parts_sigma: Array
+    amplitude: Complex
+    noise: Array
+    correlated: Array
+
+
+@dataclass(frozen=True)
+class _Times:
+    """Even times of a run-up: phase step and stretch of each, and the mean over a stretch."""
+
+    step: float
+    angle: Array
+    edges: Array
+    rows: NDArray[np.int_]
+
+
+@dataclass(frozen=True)
+class ModeProblem:
+    """Amplitudes of orders over speed, and how they are compared with modes.
+
+    Attributes:
+        spectrum: amplitudes
+        stands: True for a sensor that does not go round with the lobes
+    """
+
+    spectrum: OrdersOverSpeed
+    stands: bool
+
+    @cached_property
+    def measured(self) -> Complex:
+        return np.where(self.weight > 0.0, np.nan_to_num(self.spectrum.amplitude), 0.0)
+
+    @cached_property
+    def weight(self) -> Array:
+        """Usual over expected standard deviation of an amplitude; 0 if a stretch does not show the order; shape (orders, k)."""
+        shown = np.isfinite(self.spectrum.amplitude)
+        changes = np.abs(np.diff(np.nan_to_num(self.spectrum.amplitude), axis=1)).max(axis=0, initial=0.0)
+        near = np.maximum(np.append(changes, 0.0), np.append(0.0, changes))
+        sigma = np.hypot(self.spectrum.sigma, LEAKING_SHARE * near)
+        return np.where(shown, np.median(sigma) / np.maximum(sigma, 1e-3 * np.median(sigma) + 1e-300), 0.0)
+
+    @cached_property
+    def count(self) -> Array:
+        """Number of stretches of each order."""
+        return np.maximum((self.weight > 0.0).sum(axis=1), 1).astype(float)
+
+    @cached_property
+    def scale(self) -> Array:
+        """Root mean square of each order without its mean."""
+        mean = (self.measured * self.weight).sum(axis=1) / np.maximum(self.weight.sum(axis=1), 1e-300)
+        square = (np.abs(self.weight * (self.measured - mean[:, None])) ** 2).sum(axis=1) / self.count
+        return np.sqrt(np.maximum(square, 1e-300))
+
+    @cached_property
+    def base(self) -> Complex:
+        """What passes by the modes: a constant and a share that grows with the speed squared, shape (orders, k, 2)."""
+        square = (self.spectrum.speed / np.abs(self.spectrum.speed).max()) ** 2
+        both = np.stack([np.ones_like(square), square], axis=1).astype(complex)
+        return np.broadcast_to(both, (len(self.spectrum.orders), *both.shape))
+
+    # ---- Columns ---------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _times(self) -> list[_Times]:
+        return [times for place in range(len(self.spectrum.recordings)) if (times := self._times_of(place)) is not None]
+
+    def _times_of(self, place: int) -> _Times | None:
+        """Return even times of a recording whose speed changes; None of one at constant speed."""
+        recording, stretches = self.spectrum.recordings[place], self.spectrum.stretches
+        rows = np.flatnonzero(stretches[:, 2] == place)
+        if not len(rows):
+            return None
+        speed = recording.speed[stretches[rows[0], 0] : stretches[rows[-1], 1]]
+        if np.ptp(speed) < 0.02 * speed.max():
+            return None
+        duration = recording.time[-1] - recording.time[0]
+        rate = float(speed.max() - speed.min()) / duration * (float(self.spectrum.orders.max()) + MAX_SLOPE)
+        step = float(np.sqrt(2.0 * SLOW_SWEEP_SHARE / max(rate, 1e-300)))
+        begins = recording.time[np.append(stretches[rows, 0], stretches[rows[-1], 1] - 1)]
+        step = min(step, float(np.diff(begins).min()) / STEPS_PER_STRETCH)
+        steps = min(int(duration / step) + 2, MAX_STEPS)
+        time = np.linspace(recording.time[0], recording.time[-1], steps)
+        edges = (begins - time[0]) / (time[1] - time[0])
+        return _Times(float(time[1] - time[0]), np.interp(time, recording.time, recording.angle), edges, rows)
+
+    def _answers(self, passes: Sequence[float], frequency: float, damping: float) -> Complex:
+        """Return the mean receptance in each stretch of forces that pass so often in a revolution, shape (passes, k)."""
+        orders = np.asarray(passes)[:, None]
+        answer = _receptance(orders * self.spectrum.speed, frequency, damping)
+        for times in self._times:
+            key = (tuple(passes), id(times))
+            if key not in self._forces:
+                phase = orders * times.angle
+                self._forces[key] = np.exp(1j * phase), np.asarray(1j * np.diff(phase, axis=1) / times.step)
+            answer[:, times.rows] = _later(times, *self._forces[key], frequency, damping)
+        return answer
+
+    @cached_property
+    def _kept(self) -> dict[tuple[float, float, float], Complex]:
+        return {}
+
+    @cached_property
+    def _forces(self) -> dict[tuple[tuple[float, ...], int], tuple[Complex, Complex]]:
+        return {}
+
+    def answers(self, line: Line) -> Complex:
+        """Return the columns of both lines of a mode, or receptance and mobility of a sensor that stands, shape (orders, k, 2)."""
+        orders, acts = self.spectrum.orders, line.acts.any(axis=0)
+        if self.stands:
+            receptance = self._answers_at(line, 0.0)
+            return np.stack([receptance, 1j * np.outer(orders, self.spectrum.speed) / line.frequency * receptance], axis=2)
+        parts = [self._answers_at(line, slope) for slope, any_of in zip((line.slope, -line.slope), acts, strict=True) if any_of]
+        none = np.zeros((len(orders), len(self.spectrum.speed)), complex)
+        return np.stack([parts.pop(0) if any_of else none for any_of in acts], axis=2)
+
+    def _answers_at(self, line: Line, slope: float) -> Complex:
+        key = line.frequency, line.damping, slope
+        if key not in self._kept:
+            if len(self._kept) >= MAX_KEPT_ANSWERS:
+                self._kept.clear()
+                self._forces.clear()
+            self._kept[key] = self._answers((self.spectrum.orders - slope).tolist(), line.frequency, line.damping)
+        return self._kept[key]
+
+    def _columns(self, lines: Sequence[Line]) -> tuple[Complex, Array]:
+        """Return all weighted columns with their prior standard deviations, shapes (orders, k, c) and (orders, c)."""
+        columns, priors = [self.base], [np.full((len(self.scale), 2), BASE_PRIOR) * self._mean_size[:, None]]
+        for line in lines:
+            answer = self.answers(line)
+            columns.append(answer)
+            size = np.stack([self._size(answer[..., part]) for part in range(2)], axis=1)
+            priors.append(np.where(line.acts, self.scale[:, None] / size, 0.0))
+        stacked = np.concatenate(columns, axis=2) * self.weight[..., None]
+        return stacked, np.concatenate(priors, axis=1)
+
+    @cached_property
+    def _mean_size(self) -> Array:
+        return np.sqrt((np.abs(self.weight * self.measured) ** 2).sum(axis=1) / self.count) + 1e-300
+
+    def _size(self, column: Complex) -> Array:
+        """Return the root mean square of a column of each order, without its mean."""
+        mean = (column * self.weight).sum(axis=1) / np.maximum(self.weight.sum(axis=1), 1e-300)
+        square = (np.abs(self.weight * (column - mean[:, None])) ** 2).sum(axis=1) / self.count
+        return np.sqrt(np.maximum(square, 1e-300))
+
+    # ---- Fit -------------------------------------------------------------------------------------------------------
+
+    def _projected(self, modes: Sequence[Line], noise: Array) -> tuple[Complex, Array, Complex, Complex, Complex]:
+        """Return columns, priors, coefficients, covariance for noise 1 and residual (weighted), by least squares with priors."""
+        columns, prior = self._columns(modes)
+        scaled = columns * prior[:, None, :]
+        normal = np.einsum("qkc,qkd->qcd", scaled.conj(), scaled)
+        ridge = noise**2 + 1e-13 * np.einsum("qcc->q", normal).real
+        normal += ridge[:, None, None] * np.eye(normal.shape[1])
+        target = self.weight * self.measured
+        inverse = np.linalg.inv(normal)
+        values = np.einsum("qcd,qd->qc", inverse, np.einsum("qkc,qk->qc", scaled.conj(), target))
+        left = target - np.einsum("qkc,qc->qk", scaled, values)
+        return columns, prior, values * prior, inverse * prior[:, :, None] * prior[:, None, :], left
+
+    def fit(self, lines: Sequence[Line], noise: Array, correlated: Array, free: Sequence[int] | None = None) -> Fitted:
+        """Return the fit of lines from first values, for a noise of the amplitudes; only some lines are searched if `free`."""
+        lines = self._searched(tuple(lines), noise, correlated, range(len(lines)) if free is None else free) if lines else ()
+        _, prior, values, covariance, left = self._projected(lines, noise)
+        spread = np.zeros((0, 0))
+        if lines and free is None:
+            jacobian = self._jacobian(lines, noise, correlated)
+            spread = np.linalg.pinv(jacobian.T @ jacobian)
+        shape = (len(self.scale), len(lines), 2)
+        parts = values[:, 2:].reshape(shape)
+        variance = np.einsum("qcc->qc", covariance).real[:, 2:].reshape(shape)
+        sigma = (noise * np.sqrt(correlated))[:, None, None] * np.sqrt(np.maximum(variance, 0.0))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            amplitude = np.where(self.weight > 0.0, self.measured - left / self.weight, complex("nan"))
+        freedom = np.maximum(self.count - 2.0 - (prior[:, 2:] > 0.0).sum(axis=1), 1.0)
+        own = np.sqrt((np.abs(left) ** 2).sum(axis=1) / freedom)
+        length = np.array([_correlation(each[used > 0.0]) for each, used in zip(left, self.weight, strict=True)])
+        evidence = self._evidence(lines, noise, correlated, spread)
+        return Fitted(lines, evidence, self._of_frequency(lines, spread), parts, sigma, amplitude, own, length)
+
+    def _evidence(self, lines: Sequence[Line], noise: Array, correlated: Array, spread: Array) -> float:
+        """Return the logarithm of the evidence, its noise integrated over, with Laplace's method for the searched values."""
+        columns, prior, values, _, left = self._projected(lines, noise)
+        independent = self.count / correlated
+        with np.errstate(divide="ignore", invalid="ignore"):
+            costs = np.where(prior > 0.0, np.abs(values / prior) ** 2, 0.0)
+        square = (np.abs(left) ** 2).sum(axis=1) + noise**2 * costs.sum(axis=1)
+        floor = self.count * noise**2
+        fitted = -independent * np.log(np.maximum(square, 1e-300) / np.maximum(floor, 1e-300))
+        scaled = columns * prior[:, None, :]
+        normal = np.einsum("qkc,qkd->qcd", scaled.conj(), scaled) / (noise**2 * correlated)[:, None, None]
+        _, size = np.linalg.slogdet(np.eye(normal.shape[1]) + normal)
+        occam = 0.0
+        if len(spread):
+            ranges = [
+                log(self._range[1] / self._range[0]),
+                log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0]),
+                SLOPE_PRIOR * np.sqrt(tau),
+            ]
+            share = np.sqrt(tau * np.maximum(np.diag(spread), 1e-300)) / np.tile(ranges, len(lines))
+            occam = float(np.sum(np.log(np.minimum(share, 1.0))))
+        return float(np.sum(fitted - size)) + occam
+
+    @cached_property
+    def _range(self) -> tuple[float, float]:
+        """Lowest and highest speed at which a peak is looked for [rad/s]."""
+        return 0.9 * float(self.spectrum.speed.min()), 1.15 * float(self.spectrum.speed.max())
+
+    def _searched(self, lines: tuple[Line, ...], noise: Array, correlated: Array, free: Sequence[int]) -> tuple[Line, ...]:
+        from scipy.optimize import least_squares
+
+        searched = [lines[k] for k in free]
+        reference = [self._reference(line) for line in searched]
+        low, high = np.log(self._range), np.log(DAMPING_BOUNDS)
+        ends = [[low[0] - 0.2, high[0], -MAX_SLOPE], [low[1] + 0.2, high[1], MAX_SLOPE]]
+        if self.stands:
+            ends = [[*each[:2]] for each in ends]
+        bounds = np.tile(ends, len(searched))
+        start = np.clip(self._values(searched, reference), bounds[0] + 1e-9, bounds[1] - 1e-9)
+        scale = np.tile([0.01, 0.3, 0.3][: len(ends[0])], len(searched))
+
+        def moved(values: Array) -> tuple[Line, ...]:
+            own = dict(zip(free, self._lines(values, searched, reference), strict=True))
+            return tuple(own.get(k, line) for k, line in enumerate(lines))
+
+        def left(values: Array) -> Array:
+            return self._whitened(moved(values), noise, correlated)
+
+        if not searched:
+            return lines
+        best = least_squares(left, start, x_scale=scale, bounds=bounds, max_nfev=MAX_SEARCH_STEPS, xtol=1e-5, ftol=1e-5)
+        return moved(best.x)
+
+    def _reference(self, line: Line) -> float:
+        """Return the order whose peak stands for the frequency of a line: of those that it acts on, one far from its slope."""
+        own = line.acts[:, 0]
+        orders = self.spectrum.orders[own] if own.any() else self.spectrum.orders
+        return float(orders[int(np.argmin(np.abs(np.abs(orders - line.slope) - 3.0)))])
+
+    def _values(self, lines: Sequence[Line], reference: Sequence[float]) -> Array:
+        """Return what is searched of lines: the logarithm of the speed of a peak, of the damping, and the slope."""
+        rows = []
+        for line, order in zip(lines, reference, strict=True):
+            row = [log(line.frequency / max(abs(order - line.slope), MIN_PASSES)), log(line.damping)]
+            rows.append(row if self.stands else [*row, line.slope])
+        return np.array(rows).ravel()
+
+    def _lines(self, values: Array, lines: Sequence[Line], reference: Sequence[float]) -> tuple[Line, ...]:
+        made = []
+        for line, order, row in zip(lines, reference, values.reshape(len(lines), -1).tolist(), strict=True):
+            slope = 0.0 if self.stands else row[2]
+            frequency = float(np.exp(row[0])) * max(abs(order - slope), MIN_PASSES)
+            made.append(line._replace(frequency=frequency, damping=float(np.exp(row[1])), slope=slope))
+        return tuple(made)
+
+    def _of_frequency(self, lines: Sequence[Line], spread: Array) -> Array:
+        """Return the covariance of the logarithms of frequency and damping and of the slope, from that of what is searched."""
+        if not len(spread):
+            return spread
+        width = 2 if self.stands else 3
+        turned = np.zeros((3 * len(lines), width * len(lines)))
+        for k, line in enumerate(lines):
+            gap = self._reference(line) - line.slope
+            turned[3 * k : 3 * k + width, width * k : width * (k + 1)] = np.eye(width)
+            if not self.stands and abs(gap) > MIN_PASSES:
+                turned[3 * k, width * k + 2] = -1.0 / gap
+        return np.asarray(turned @ spread @ turned.T)
+
+    def _whitened(self, lines: Sequence[Line], noise: Array, correlated: Array) -> Array:
+        """Return what the best coefficients leave, over the noise, with what priors cost; real, shape (n,)."""
+        _, prior, values, _, left = self._projected(lines, noise)
+        scale = np.sqrt(2.0) / (noise * np.sqrt(correlated))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            costs = np.where(prior > 0.0, values / prior, 0.0) * noise[:, None]
+        both = np.concatenate([left, costs], axis=1) * scale[:, None]
+        return np.concatenate([both.real.ravel(), both.imag.ravel(), [line.slope / SLOPE_PRIOR for line in lines]])
+
+    def _jacobian(self, lines: Sequence[Line], noise: Array, correlated: Array) -> Array:
+        reference = [self._reference(line) for line in lines]
+        middle = self._values(lines, reference)
+        steps = np.tile([1e-4, 1e-3, 1e-3][: len(middle) // len(lines)], len(lines))
+        columns = []
+        for place, step in enumerate(steps):
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = middle.copy()
+                moved[place] += sign * step
+                ends.append(self._whitened(self._lines(moved, lines, reference), noise, correlated))
+            columns.append((ends[0] - ends[1]) / (2.0 * step))
+        return np.stack(columns, axis=1)
+
+    # ---- First values ----------------------------------------------------------------------------------------------
+
+    def starts(self, beside: Sequence[Line], noise: Array, correlated: Array) -> list[tuple[float, Line]]:
+        """Return first values of one more line beside others, with the evidence that each adds, the best first."""
+        every = max(len(self.spectrum.speed) // MAX_SEARCH_SPEEDS, 1)
+        columns, prior = self._columns(beside)
+        speed, orders = self.spectrum.speed[::every], self.spectrum.orders
+        bases, targets = [], []
+        for q in range(len(orders)):
+            basis = np.linalg.qr((columns[q] * prior[q])[::every][:, prior[q] > 0.0])[0]
+            own = (self.weight * self.measured)[q, ::every]
+            bases.append(basis)
+            targets.append(own - basis @ (basis.conj().T @ own))
+        low, high = self._range
+        slopes = (0,) if self.stands else SEARCH_SLOPES
+        gaps = [abs(order - slope) for order in orders.tolist() for slope in slopes]
+        least, most = log(max(min(gap for gap in gaps if gap > 0.0), MIN_PASSES) * low), log(max(gaps) * high)
+        found = []
+        for damping in SEARCH_DAMPINGS:
+            step = SEARCH_STEP_SHARE * damping
+            frequency = np.exp(np.arange(least, most, step))
+            receptances: dict[float, tuple[slice, Complex]] = {}
+            by_slope: dict[int, Array] = {}
+            for slope in slopes:
+                gains = np.zeros((len(orders), len(frequency)))
+                for q, order in enumerate(orders.tolist()):
+                    gap = abs(order - slope)
+                    if gap < MIN_PASSES:
+                        continue
+                    if gap not in receptances:
+                        first, last = (max(int((log(gap * end) - least) / step), 0) for end in (low, high))
+                        met = slice(first, last + 1)
+                        receptances[gap] = met, _receptance(gap * speed[None, :], frequency[met, None], damping)
+                    met, part = receptances[gap]
+                    part = part if order > slope else part.conj()
+                    weight, independent = self.weight[q, ::every], self.count[q] / correlated[q]
+                    gains[q, met] = _gain(part * weight, bases[q], targets[q], float(noise[q]), independent)
+                by_slope[slope] = np.where(gains > MIN_ORDER_EVIDENCE, gains, 0.0)
+            for slope, own in by_slope.items():
+                opposite = by_slope[-slope] if slope else np.zeros(own.shape)
+                for second in (np.zeros(own.shape), opposite) if slope > 0 else (np.zeros(own.shape),):
+                    total = own.sum(axis=0) + second.sum(axis=0)
+                    peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
+                    for k in peaks[total[peaks] > 0.0].tolist():
+                        acts = (*(own[:, k] > 0.0).tolist(), *((own if self.stands else second)[:, k] > 0.0).tolist())
+                        found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts)))
+        found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
+        kept: list[tuple[float, Line]] = []
+        for gain, line in found:
+            slope = abs(line.slope)
+            if not any(abs(m.slope) == slope and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
+                kept.append((gain, line))
+        return kept
+
+
+def _gain(part: Complex, basis: Complex, target: Complex, noise: float, independent: float) -> Array:
+    """Return what a column, of many frequencies, adds to the evidence of an order."""
+    left = part - (part @ basis.conj()) @ basis.T
+    whole = float(np.sum(np.abs(target) ** 2)) + 1e-300
+    size = np.maximum(np.sum(np.abs(part) ** 2, axis=1), 1e-300)
+    own = np.sum(np.abs(left) ** 2, axis=1) + 1e-6 * size
+    share = np.clip(np.abs(left.conj() @ target) ** 2 / own / whole, 0.0, 1.0 - 1e-12)
+    floor = min(0.5 * len(target) * noise**2 / whole, 1.0)
+    gain = -independent * np.log(np.maximum(1.0 - share, floor))
+    return np.asarray(gain - np.log(np.maximum(gain, 1.0) * 2.0))
+
+
+def _correlation(left: Complex) -> float:
+    """Return over how many stretches a residual is correlated."""
+    if len(left) < 8:
+        return 1.0
+    return max(correlation_length(left.real), correlation_length(left.imag), 1.0)
+
+
+def _receptance(frequency: Array, natural: float | Array, damping: float) -> Complex:
+    """Return the receptance over the static one at frequencies [rad/s] with their sign."""
+    ratio = frequency / natural
+    return np.asarray(1.0 / (1.0 - ratio**2 + 2j * damping * ratio))
+
+
+def _later(times: _Times, force: Complex, rate: Complex, natural: float, damping: float) -> Complex:
+    """Return mean answers in stretches to forces exp(j phase) of these rates, in the frame of their phase, integrated in time.
+
+    H has two poles; the answer of each is integrated exactly over steps in which the frequency of the force is constant.
+    """
+    from scipy.signal import lfilter
+
+    pole = natural * (-damping + 1j * np.sqrt(1.0 - damping**2))
+    residue = natural**2 / (2j * natural * np.sqrt(1.0 - damping**2))
+    # the pole on the side of the force is integrated; the other one is far from it, and answers at once
+    ahead = (rate.imag.mean(axis=1) >= 0.0)[:, None]
+    answer = np.zeros(force.shape, complex)
+    for of_pole, of_residue, resonant in ((pole, residue, ahead), (pole.conjugate(), residue.conjugate(), ~ahead)):
+        rows, others = np.flatnonzero(resonant[:, 0]), np.flatnonzero(~resonant[:, 0])
+        if len(rows):
+            decay = np.exp(of_pole * times.step)
+            steady = of_residue * force[rows, :-1] / (rate[rows] - of_pole)
+            driven = force[rows, 1:] * steady / force[rows, :-1] - decay * steady
+            moved, _ = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * steady[:, :1])
+            answer[rows, :1] += steady[:, :1]
+            answer[rows, 1:] += moved
+        if len(others):
+            at_once = of_residue / (rate[others] - of_pole)
+            answer[others, :1] += at_once[:, :1] * force[others, :1]
+            answer[others, 1:] += at_once * force[others, 1:]
+    framed = answer * force.conj()
+    sums = np.zeros(framed.shape, complex)
+    np.cumsum(0.5 * (framed[:, 1:] + framed[:, :-1]), axis=1, out=sums[:, 1:])
+    below = np.minimum(times.edges.astype(int), framed.shape[1] - 2)
+    share = times.edges - below
+    ends = sums[:, below] + share * (framed[:, below] + 0.5 * share * (framed[:, below + 1] - framed[:, below]))
+    return np.asarray(np.diff(ends, axis=1) / np.diff(times.edges))
+
+
+# ---- Number of modes and waves ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Selected:
+    """Lines that amplitudes have.
+
+    Attributes:
+        best: the fit
+        others: for each line others with another slope, and by how much the logarithm of the evidence is less with each
+    """
+
+    best: Fitted
+    others: tuple[tuple[tuple[float, Line], ...], ...]
+
+
+def selected(problem: ModeProblem) -> Selected:
+    """Return the modes whose evidence is sufficient: added one after the other, then each exchanged for a better one."""
+    best = problem.fit((), problem.scale, np.ones(len(problem.scale)))
+    others: tuple[tuple[tuple[float, Line], ...], ...] = ()
+    for _ in range(MAX_ROUNDS):
+        best = _added(problem, best)
+        exchanged = False
+        rivals = []
+        for place in range(len(best.lines)):
+            others_of = _others(problem, best, place)
+            lag, line = min(others_of, default=(0.0, None), key=lambda each: each[0])
+            if line is not None and lag < -MIN_LEAD_OF_RIVAL:
+                lines = (*best.lines[:place], line, *best.lines[place + 1 :])
+                best = _pruned(problem, problem.fit(lines, _noise(best, problem), best.correlated))
+                exchanged = True
+                break
+            rivals.append(others_of)
+        others = tuple(rivals)
+        if not exchanged:
+            break
+    if len(others) < len(best.lines):
+        others = tuple(_others(problem, best, place) for place in range(len(best.lines)))
+    return Selected(best, others)
+
+
+def _added(problem: ModeProblem, best: Fitted) -> Fitted:
+    """Return a fit with further modes, as long as each makes the amplitudes sufficiently more probable."""
+    white = np.ones(len(problem.scale))
+    while len(best.lines) < MAX_MODES:
+        noise = _noise(best, problem)
+        proposed = problem.starts(best.lines, noise, white)
+        own, tried = [len(best.lines)], []
+        for gain, line in proposed[:MAX_STARTS]:
+            if gain < proposed[0][0] - MAX_EVIDENCE_LAG:
+                break
+            trial = problem.fit((*best.lines, line), noise, white, own)
+            tried.append(problem.fit(trial.lines, _noise(trial, problem), trial.correlated, own))
+        if not tried:
+            break
+        least = min(tried, key=lambda each: float(np.sum(np.log(each.noise) * problem.count)))
+        noise = _noise(least, problem)
+        same = [problem.fit(each.lines, noise, least.correlated, own) for each in tried]
+        before = problem.fit(best.lines, noise, least.correlated)
+        winner = _pruned(problem, max(same, key=lambda each: each.evidence + _prior(each.lines[-1])))
+        winner = problem.fit(winner.lines, noise, least.correlated)
+        if winner.evidence - before.evidence < MIN_EVIDENCE_OF_MODE:
+            break
+        best = winner
+    return best
+
+
+def _prior(line: Line) -> float:
+    """Return the logarithm of how probable a slope is: modes that travel freely, or not at all, have whole ones."""
+    return 0.0 if abs(line.slope - round(line.slope)) < MAX_FROM_WHOLE else -log(WHOLE_SLOPE_ODDS)
+
+
+def _noise(fit: Fitted, problem: ModeProblem) -> Array:
+    return np.maximum(fit.noise, 1e-9 * problem.scale)
+
+
+def _acting(fit: Fitted) -> tuple[Line, ...]:
+    """Return the modes, each with the orders whose coefficients are significant, the line with more of them first."""
+    acting = []
+    for k, line in enumerate(fit.lines):
+        acts = (np.abs(fit.parts[:, k]) > MIN_SIGNIFICANCE * fit.parts_sigma[:, k]) & line.acts
+        if acts[:, 1].sum() > acts[:, 0].sum():
+            acts, line = acts[:, ::-1], line._replace(slope=-line.slope)
+        acting.append(line._replace(acts_on=tuple(acts.T.ravel().tolist())))
+    return tuple(acting)
+
+
+def _pruned(problem: ModeProblem, fit: Fitted) -> Fitted:
+    """Return the fit in which each mode acts on the orders whose coefficients are significant, of all of them.
+
+    Two lines that begin near one frequency, with opposite slopes, are tried as one mode and as two.
+    """
+    single = list[Line]()
+    for line in fit.lines:
+        if not any(_same_mode(line, other) for other in single):
+            single.append(line)
+    pruned = [_acting_anywhere(problem, fit, lines) for lines in {tuple(single): None, fit.lines: None}]
+    return max(pruned, key=lambda each: problem.fit(each.lines, _noise(pruned[-1], problem), fit.correlated).evidence)
+
+
+def _acting_anywhere(problem: ModeProblem, fit: Fitted, lines: Sequence[Line]) -> Fitted:
+    count, everywhere = len(problem.scale), []
+    for line in lines:
+        alone = not any(_same_mode(line, other) for other in lines if other is not line)
+        both = problem.stands or (alone and abs(line.slope) > MIN_SLOPE_OF_BOTH)
+        everywhere.append(line._replace(acts_on=(True,) * count + (both,) * count))
+    trial = problem.fit(everywhere, _noise(fit, problem), fit.correlated, ())
+    acting = tuple(line for line in _acting(trial) if any(line.acts_on))
+    if problem.stands:
+        acting = tuple(line._replace(acts_on=2 * tuple(line.acts.any(axis=1).tolist())) for line in acting)
+    return problem.fit(acting, _noise(fit, problem), fit.correlated)
+
+
+def _same_mode(one: Line, other: Line) -> bool:
+    """Return True if two lines begin at one frequency and have the same or opposite slopes."""
+    tilt = abs(abs(one.slope) - abs(other.slope))
+    return abs(log(one.frequency / other.frequency)) < SAME_START and tilt < MIN_SLOPE_OF_BOTH
+
+
+def _others(problem: ModeProblem, best: Fitted, place: int) -> tuple[tuple[float, Line], ...]:
+    """Return what a line may be with another slope, and by how much the logarithm of the evidence is less."""
+    noise, own = _noise(best, problem), best.lines[place]
+    beside = [line for k, line in enumerate(best.lines) if k != place]
+    proposed = problem.starts(beside, noise, np.ones(len(noise)))
+    lead = max((gain for gain, _ in proposed), default=0.0)
+    fits = list[Fitted]()
+    for gain, line in proposed[: 3 * MAX_STARTS]:
+        if gain < lead - MAX_EVIDENCE_LAG or len(fits) >= MAX_STARTS:
+            break
+        slopes = [own.slope, *(fit.lines[place].slope for fit in fits)]
+        if min(abs(abs(line.slope) - abs(slope)) for slope in slopes) > MIN_SLOPE_GAP:
+            lines = [*best.lines[:place], line, *best.lines[place + 1 :]]
+            fits.append(problem.fit(lines, noise, best.correlated, [place]))
+    least = problem.fit(best.lines, noise, best.correlated, ()).evidence + _prior(own)
+    rivals = [(least - fit.evidence - _prior(fit.lines[place]), fit.lines[place]) for fit in fits]
+    return tuple(rival for rival in rivals if abs(abs(rival[1].slope) - abs(own.slope)) > MIN_SLOPE_GAP)
