@@ -321,10 +321,8 @@ def _of_orders(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     missed = error.orders[(np.abs(fit.error) > 0.0) & (fit.misfit > NAMED_MISFIT * np.abs(fit.error))]
     if len(missed):
         names = listed(f"{order:g}" for order in missed.tolist())
-        yield (
-            f"the fall is one number for all orders; it misses by a quarter of the amplitude or more that of order {names}: for a "
-            "spectrum at one load give the rows of that load alone"
-        )
+        missing = f"it misses that of order {names} by a quarter of the amplitude or more"
+        yield f"the fall is one number for all orders; {missing}: for a spectrum at one load give the rows of that load alone"
 
 
 def _of_noise(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
