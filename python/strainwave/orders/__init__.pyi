@@ -14,4 +14,5 @@ from .over_temperature import (
 )
 from .ring_modes import RingMode as RingMode, RingModes as RingModes, ring_modes as ring_modes
 from .torque_ripple import Ripple as Ripple, ripple as ripple
+from .tracked_orders import OrderTracks as OrderTracks, order_tracks as order_tracks
 from .two_encoders import TransmissionError as TransmissionError
