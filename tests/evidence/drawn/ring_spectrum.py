@@ -1,9 +1,9 @@
 """Records of a flexible ring by finite elements: modes and bearing that its orders over the speed determine.
 
 Records come from `tests.evidence.flexible_ring`, by constant speeds or by run-ups. The truth of a mode is an eigenline of the
-gear in the frame of the lobes, where an order that is stated to pass it meets it: the frequency of its tangent at speed zero, its
-slope, and its damping. A mode whose slope lies more than a quarter beside its waves is wrong, however often it fits. A bearing is
-right with its number of balls and its diameter ratio.
+gear in the frame of the lobes, where an order that is stated to pass it meets it: the frequency of its tangent at speed zero,
+its slope, and its damping. A mode whose slope lies more than a quarter beside its waves is wrong, however well it fits. A
+bearing is right with its number of balls and its diameter ratio.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Eigenlines of a gear: natural frequencies in the frame of the lobes over the speed of the wave generator.
 
-In that frame the mean contacts stand and the ring runs through them. Shapes come from the mean over a pitch of teeth and of balls,
-frequency and decay from the return map of one pass of a ball (Floquet): the stiffness of the balls varies so much that its mean is
-0.2 % too stiff. An order q of the input excites a line where q times the speed is its frequency: a wave
-that runs around a free ring shows as a line of slope plus or minus its number of waves, a shape that the contacts keep at the
-lobes as a line of slope zero.
+In that frame the mean contacts stand and the ring runs through them. Shapes come from the mean over a pitch of teeth and of
+balls, frequency and decay from the return map of one pass of a ball (Floquet): the stiffness of the balls varies so much that
+its mean is 0.2 % too stiff. An order q of the input excites a line where q times the speed is its frequency. A wave that runs
+around a free ring shows as a line of slope plus or minus its number of waves, a shape that the contacts keep at the lobes as a
+line of slope zero.
 """
 
 from __future__ import annotations
