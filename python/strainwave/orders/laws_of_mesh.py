@@ -175,7 +175,7 @@ def mesh_laws(table: MeshTable, *, repeats: int = 1, false_alarm: float = 0.01) 
     >>> error = (3e-4 * np.sin(2 * angle + 0.5) + 4e-5 * np.sin(4 * angle)) / (1 + 0.02 * abs(torque)) ** 2
     >>> table = sw.files.MeshTable(angle, torque, transmission_error=error + torque / 20e3)
     >>> found = sw.orders.mesh_laws(table)
-    >>> found.kinematic_error.law.order, round(found.kinematic_error.load_sensitivity, 3), round(found.stiffness.k, -1)
+    >>> found.kinematic_error.law.order, round(found.kinematic_error.load_sensitivity, 3), round(found.stiffness.k, -2)
     ((2.0, 4.0), 0.02, 20000.0)
     """
     if not isinstance(table, MeshTable):
