@@ -1,6 +1,6 @@
 from .bearing_candidates import BearingCandidates as BearingCandidates, bearing_candidates as bearing_candidates
 from .campbell_diagram import Campbell as Campbell, campbell as campbell
-from .laws_of_mesh import MeshLaws as MeshLaws, mesh_laws as mesh_laws
+from .mesh.laws import MeshLaws as MeshLaws, mesh_laws as mesh_laws
 from .order_spectrum import (
     BearingOrders as BearingOrders,
     Orders as Orders,

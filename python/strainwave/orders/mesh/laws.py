@@ -15,8 +15,8 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.mesh_table import MeshTable, ModeTable
 from strainwave.messages import listed, shortened
-from strainwave.orders.mesh_application import applied
-from strainwave.orders.mesh_error import (
+from strainwave.orders.mesh.application import applied
+from strainwave.orders.mesh.error import (
     ErrorFit,
     StiffnessVariation,
     error_fit,
@@ -24,7 +24,7 @@ from strainwave.orders.mesh_error import (
     transmission_error,
     twists_of,
 )
-from strainwave.orders.mesh_harmonics import Harmonics, harmonics
+from strainwave.orders.mesh.harmonics import Harmonics, harmonics
 from strainwave.presentation import Pictured, Row, counted
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import stiffness, variation
-from strainwave.orders.mesh_harmonics import Harmonics
-from strainwave.orders.mesh_loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
+from strainwave.orders.mesh.harmonics import Harmonics
+from strainwave.orders.mesh.loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
 from strainwave.presentation import counted
 
 Array = NDArray[np.float64]
