@@ -82,8 +82,8 @@ def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: fl
 
     The last one is that after which the forms of widths leave more of each share open than the noise does.
     """
-    information, taken = np.linalg.inv(further.covariance), list[int]()
-    covariance, left = further.covariance, budget
+    information: Array = np.linalg.inv(further.covariance)
+    taken, covariance, left = list[int](), further.covariance, budget
     while np.any(np.sqrt(np.diag(covariance)[wanted]) > further.floors[wanted]):
         affordable = np.flatnonzero(cost <= left)
         if not affordable.size:
