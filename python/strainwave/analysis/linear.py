@@ -351,9 +351,9 @@ def modes(drive: Drive) -> dict[str, Array]:
     same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
     damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPING_UNITS]
-    undamped = gear.structure.replace(dict.fromkeys(damped, 0.0))
-    if vibrating := getattr(getattr(undamped, "ring", None), "damping", ()):
-        undamped = undamped.replace(ring=undamped.ring.replace(damping=[0.0] * len(vibrating)))
+    undamped: Any = gear.structure.replace(dict.fromkeys(damped, 0.0))
+    if shares := getattr(getattr(undamped, "ring", None), "damping", ()):
+        undamped = undamped.replace(ring=undamped.ring.replace(damping=[0.0] * len(shares)))
     gear = gear.replace(structure=undamped)
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HOLDING_TORQUE, breakaway=HOLDING_TORQUE)))

@@ -79,8 +79,8 @@ def limits_in(texts: Sequence[str]) -> dict[str, float]:
     Raises:
         ValueError: a name is none of the quantities, or a value no number of its unit
 
-    >>> limits_in(["play=1.5 arcmin", "stiffness=15e3"])
-    {'play': 0.0004363323129985824, 'stiffness': 15000.0}
+    >>> limits_in(["play=0.3 mrad", "stiffness=15e3"])
+    {'play': 0.0003, 'stiffness': 15000.0}
     """
     limits = {}
     for text in texts:

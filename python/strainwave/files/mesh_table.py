@@ -107,7 +107,13 @@ class MeshTable(ComparedByFields, Presented):
         return {name for name in QUANTITY_UNITS if getattr(self, name) is not None}
 
     @staticmethod
-    def read(path: str | Path, columns: Mapping[str, str] | None = None, units: Mapping[str, str] | None = None) -> MeshTable:
+    def read(
+        path: str | Path,
+        columns: Mapping[str, str] | None = None,
+        units: Mapping[str, str] | None = None,
+        *,
+        lever: float | None = None,
+    ) -> MeshTable:
         """Read a table from a file of any format that `Recording.read` reads.
 
         Args:
@@ -116,6 +122,7 @@ class MeshTable(ComparedByFields, Presented):
                 20 N.m`, or in files of arrays a matrix with `torque` of each of its columns
             columns: for each of these names, the name in the file, if it has another one
             units: unit of each column, by these names, if the file has none
+            lever: pitch radius x cos(pressure angle) [m], for a mesh stiffness at the output's scale [N.m/rad]
 
         Raises:
             ValueError: a column or a unit is missing, a number is not finite, or as the class
@@ -135,8 +142,8 @@ class MeshTable(ComparedByFields, Presented):
         wanted = _wanted(opened, columns or {}, wide)
         series = _read(path, opened, wanted, {**(units or {}), **_units_of_loads(wide, units or {})})
         try:
-            _check_mesh_unit(series)
-            rows = _stacked(series, wide) if wide else {name: series.values(name, unit) for name, unit in _units_of(series)}
+            arm = None if lever is None else arguments.number("lever", lever, "m", low=0.0)
+            rows = _stacked(series, wide, arm) if wide else {name: _values(series, name, name, arm) for name in series.names}
             return MeshTable(**rows, source=Path(path).name)
         except ValueError as error:
             raise ValueError(one_line(f"{path}: {error}")) from None
@@ -245,19 +252,19 @@ def _read(path: str | Path, opened: OpenTable, wanted: Mapping[str, str], units:
     return recording_of(path, read_table(opened, wanted, there))
 
 
-def _check_mesh_unit(series: Recording) -> None:
-    """Refuse a mesh stiffness at the output's scale, whose lever only who computed it knows."""
-    for name in series.names:
-        if name.startswith("mesh_stiffness") and measures(series.unit(name), "N.m/rad"):
-            remedy = "divide it by (pitch radius x cos(pressure angle))^2, which gives N/m along the line of action"
-            raise ValueError(f"column {quoted(name)} is in {series.unit(name)}; {remedy}")
+def _values(series: Recording, name: str, quantity: str, lever: float | None) -> Array:
+    """Return a column in SI units; a mesh stiffness at the output's scale by its lever."""
+    if quantity != "mesh_stiffness" or not measures(series.unit(name), "N.m/rad"):
+        return series.values(name, {**PLACE_UNITS, **QUANTITY_UNITS}[quantity])
+    if lever is None:
+        remedy = "give lever=pitch radius x cos(pressure angle) [m]"
+        raise ValueError(
+            f"column {quoted(name)} is in {series.unit(name)}, and along the line of action it is in N/m; {remedy}"
+        )
+    return np.asarray(series.values(name, "N.m/rad") / lever**2)
 
 
-def _units_of(series: Recording) -> list[tuple[str, str]]:
-    return [(name, unit) for name, unit in {**PLACE_UNITS, **QUANTITY_UNITS}.items() if name in series]
-
-
-def _stacked(series: Recording, wide: Mapping[str, _Load]) -> dict[str, Any]:
+def _stacked(series: Recording, wide: Mapping[str, _Load], lever: float | None) -> dict[str, Any]:
     """Return the rows of a table that has a column for each load."""
     loads: dict[float, dict[str, str]] = {}
     for name, load in wide.items():
@@ -272,7 +279,7 @@ def _stacked(series: Recording, wide: Mapping[str, _Load]) -> dict[str, Any]:
     angle = series.values("angle", "rad")
     rows: dict[str, Any] = {"angle": np.tile(angle, len(loads)), "torque": np.repeat(np.array(list(loads)), len(angle))}
     for quantity in names:
-        columns = [series.values(of_load[quantity], QUANTITY_UNITS[quantity]) for of_load in loads.values()]
+        columns = [_values(series, of_load[quantity], quantity, lever) for of_load in loads.values()]
         rows[quantity] = np.concatenate(columns)
     return rows
 

@@ -53,6 +53,7 @@ MAX_SEARCH_SPEEDS = 120  # stretches, that first values are searched in
 LEAKING_SHARE = 1e-3  # of the change of an amplitude between stretches, that other orders get
 BASE_PRIOR = 30.0  # of what passes by the lines, over the root mean square of an order
 MAX_SEARCH_STEPS = 20  # of a fit: what needs more is no peak
+MAX_PROPOSED = 200  # first values of the search
 MAX_STARTS = 5  # first values that are fitted for a further line
 MAX_EVIDENCE_LAG = 40.0  # of the natural logarithm of the odds, by which the search may be worse than its best to be fitted
 MIN_ORDER_EVIDENCE = 4.0  # natural logarithm of the odds, from which an order counts for a line
@@ -67,6 +68,7 @@ MIN_SLOPE_OF_BOTH = 0.3  # from which both lines of a mode are separate
 MIN_SIGNIFICANCE = 4.0  # standard deviations of the coefficient of an order that a line acts on
 MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
 SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
+MIN_CHANGE = 1e-3  # of a receptance over its static one, along the speeds: less is that of what passes by
 MAX_KEPT_ANSWERS = 64  # of lines: a derivative changes one of several
 MAX_STEPS = 2**14  # of time, in a run-up
 STEPS_PER_STRETCH = 8.0  # of time, in the shortest stretch
@@ -197,55 +199,55 @@ class ModeProblem:
         edges = (begins - time[0]) / (time[1] - time[0])
         return _Times(float(time[1] - time[0]), np.interp(time, recording.time, recording.angle), edges, rows)
 
-    def _answers(self, passes: Sequence[float], frequency: float, damping: float) -> Complex:
-        """Return the mean receptance in each stretch of forces that pass so often in a revolution, shape (passes, k)."""
-        orders = np.asarray(passes)[:, None]
-        answer = _receptance(orders * self.spectrum.speed, frequency, damping)
-        for times in self._times:
-            key = (tuple(passes), id(times))
-            if key not in self._forces:
-                phase = orders * times.angle
-                self._forces[key] = np.exp(1j * phase), np.asarray(1j * np.diff(phase, axis=1) / times.step)
-            answer[:, times.rows] = _later(times, *self._forces[key], frequency, damping)
+    @cached_property
+    def _waves(self) -> list[tuple[_Times, Complex]]:
+        """Times of each run-up, with the waves of the orders, shape (orders, steps)."""
+        return [(times, np.exp(1j * self.spectrum.orders[:, None] * times.angle)) for times in self._times]
+
+    def _answers(self, slope: float, frequency: float, damping: float) -> Complex:
+        """Return the mean receptance in each stretch of forces of the orders, seen from a line, shape (orders, k)."""
+        orders = self.spectrum.orders - slope
+        answer = _receptance(np.outer(orders, self.spectrum.speed), frequency, damping)
+        for times, waves in self._waves:
+            force = waves * np.exp(-1j * slope * times.angle)
+            speed = self.spectrum.speed[times.rows]
+            answer[:, times.rows] = _later(times, orders, force, speed, frequency, damping)
         return answer
 
     @cached_property
-    def _kept(self) -> dict[tuple[float, float, float], Complex]:
+    def _kept(self) -> dict[tuple[float, float, float], tuple[Complex, Array]]:
         return {}
 
-    @cached_property
-    def _forces(self) -> dict[tuple[tuple[float, ...], int], tuple[Complex, Complex]]:
-        return {}
-
-    def answers(self, line: Line) -> Complex:
-        """Return the columns of both lines of a mode, or receptance and mobility of a sensor that stands, shape (orders, k, 2)."""
-        orders, acts = self.spectrum.orders, line.acts.any(axis=0)
-        if self.stands:
-            receptance = self._answers_at(line, 0.0)
-            return np.stack([receptance, 1j * np.outer(orders, self.spectrum.speed) / line.frequency * receptance], axis=2)
-        parts = [self._answers_at(line, slope) for slope, any_of in zip((line.slope, -line.slope), acts, strict=True) if any_of]
-        none = np.zeros((len(orders), len(self.spectrum.speed)), complex)
-        return np.stack([parts.pop(0) if any_of else none for any_of in acts], axis=2)
-
-    def _answers_at(self, line: Line, slope: float) -> Complex:
-        key = line.frequency, line.damping, slope
+    def _answer(self, line: Line, part: int) -> tuple[Complex, Array]:
+        """Return a column of a mode, weighted, and its size for each order, shapes (orders, k) and (orders,)."""
+        slope = line.slope * (1.0 - 2.0 * part)
+        key = line.frequency, line.damping, float(part) if self.stands else slope
         if key not in self._kept:
             if len(self._kept) >= MAX_KEPT_ANSWERS:
                 self._kept.clear()
-                self._forces.clear()
-            self._kept[key] = self._answers((self.spectrum.orders - slope).tolist(), line.frequency, line.damping)
+            orders = self.spectrum.orders
+            answer = self._answers(0.0 if self.stands else slope, line.frequency, line.damping)
+            if self.stands and part:  # mobility
+                answer = answer * 1j * np.outer(orders, self.spectrum.speed) / line.frequency
+            self._kept[key] = answer * self.weight, self._size(answer)
         return self._kept[key]
 
     def _columns(self, lines: Sequence[Line]) -> tuple[Complex, Array]:
-        """Return all weighted columns with their prior standard deviations, shapes (orders, k, c) and (orders, c)."""
-        columns, priors = [self.base], [np.full((len(self.scale), 2), BASE_PRIOR) * self._mean_size[:, None]]
-        for line in lines:
-            answer = self.answers(line)
-            columns.append(answer)
-            size = np.stack([self._size(answer[..., part]) for part in range(2)], axis=1)
-            priors.append(np.where(line.acts, self.scale[:, None] / size, 0.0))
-        stacked = np.concatenate(columns, axis=2) * self.weight[..., None]
-        return stacked, np.concatenate(priors, axis=1)
+        """Return all weighted columns with their prior standard deviations, shapes (orders, k, c) and (orders, c).
+
+        A mode has two columns, of which one that acts on no order is zero.
+        """
+        columns = np.zeros((*self.weight.shape, 2 + 2 * len(lines)), complex)
+        priors = np.zeros((len(self.scale), 2 + 2 * len(lines)))
+        columns[..., :2] = self.base * self.weight[..., None]
+        priors[:, :2] = BASE_PRIOR * self._mean_size[:, None]
+        for place, line in enumerate(lines, 1):
+            for part, acts in enumerate(line.acts.T):
+                if acts.any():
+                    columns[..., 2 * place + part], size = self._answer(line, part)
+                    live = acts & (size > MIN_CHANGE)
+                    priors[:, 2 * place + part] = np.where(live, self.scale / size, 0.0)
+        return columns, priors
 
     @cached_property
     def _mean_size(self) -> Array:
@@ -262,15 +264,21 @@ class ModeProblem:
     def _projected(self, modes: Sequence[Line], noise: Array) -> tuple[Complex, Array, Complex, Complex, Complex]:
         """Return columns, priors, coefficients, covariance for noise 1 and residual (weighted), by least squares with priors."""
         columns, prior = self._columns(modes)
-        scaled = columns * prior[:, None, :]
-        normal = np.einsum("qkc,qkd->qcd", scaled.conj(), scaled)
-        ridge = noise**2 + 1e-13 * np.einsum("qcc->q", normal).real
+        used = (prior > 0.0).any(axis=0)
+        scaled = columns[..., used] * prior[:, None, used]
+        adjoint = scaled.conj().transpose(0, 2, 1)
+        normal = adjoint @ scaled
+        ridge = noise**2 + 1e-13 * np.trace(normal, axis1=1, axis2=2).real
         normal += ridge[:, None, None] * np.eye(normal.shape[1])
         target = self.weight * self.measured
         inverse = np.linalg.inv(normal)
-        values = np.einsum("qcd,qd->qc", inverse, np.einsum("qkc,qk->qc", scaled.conj(), target))
-        left = target - np.einsum("qkc,qc->qk", scaled, values)
-        return columns, prior, values * prior, inverse * prior[:, :, None] * prior[:, None, :], left
+        coefficients = (inverse @ (adjoint @ target[..., None]))[..., 0]
+        left = target - (scaled @ coefficients[..., None])[..., 0]
+        values = np.zeros(prior.shape, complex)
+        values[:, used] = coefficients * prior[:, used]
+        covariance = np.zeros((*prior.shape, prior.shape[1]), complex)
+        covariance[np.ix_(np.arange(len(prior)), used, used)] = inverse * prior[:, used, None] * prior[:, None, used]
+        return columns, prior, values, covariance, left
 
     def fit(self, lines: Sequence[Line], noise: Array, correlated: Array, free: Sequence[int] | None = None) -> Fitted:
         """Return the fit of lines from first values, for a noise of the amplitudes; only some lines are searched if `free`."""
@@ -302,7 +310,7 @@ class ModeProblem:
         floor = self.count * noise**2
         fitted = -independent * np.log(np.maximum(square, 1e-300) / np.maximum(floor, 1e-300))
         scaled = columns * prior[:, None, :]
-        normal = np.einsum("qkc,qkd->qcd", scaled.conj(), scaled) / (noise**2 * correlated)[:, None, None]
+        normal = scaled.conj().transpose(0, 2, 1) @ scaled / (noise**2 * correlated)[:, None, None]
         _, size = np.linalg.slogdet(np.eye(normal.shape[1]) + normal)
         occam = 0.0
         if len(spread):
@@ -346,10 +354,12 @@ class ModeProblem:
         return moved(best.x)
 
     def _reference(self, line: Line) -> float:
-        """Return the order whose peak stands for the frequency of a line: of those that it acts on, one far from its slope."""
+        """Return the order whose peak stands for the frequency of a mode: of those that it acts on, one with a peak well inside."""
         own = line.acts[:, 0]
         orders = self.spectrum.orders[own] if own.any() else self.spectrum.orders
-        return float(orders[int(np.argmin(np.abs(np.abs(orders - line.slope) - 3.0)))])
+        peaks = line.frequency / np.maximum(np.abs(orders - line.slope), MIN_PASSES)
+        low, high = self._range
+        return float(orders[int(np.argmin(np.abs(np.log(peaks / (0.3 * low + 0.7 * high)))))])
 
     def _values(self, lines: Sequence[Line], reference: Sequence[float]) -> Array:
         """Return what is searched of lines: the logarithm of the speed of a peak, of the damping, and the slope."""
@@ -451,7 +461,7 @@ class ModeProblem:
                         found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts)))
         found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
         kept: list[tuple[float, Line]] = []
-        for gain, line in found:
+        for gain, line in found[:MAX_PROPOSED]:
             slope = abs(line.slope)
             if not any(abs(m.slope) == slope and abs(log(m.frequency / line.frequency)) < SAME_START for _, m in kept):
                 kept.append((gain, line))
@@ -483,38 +493,38 @@ def _receptance(frequency: Array, natural: float | Array, damping: float) -> Com
     return np.asarray(1.0 / (1.0 - ratio**2 + 2j * damping * ratio))
 
 
-def _later(times: _Times, force: Complex, rate: Complex, natural: float, damping: float) -> Complex:
-    """Return mean answers in stretches to forces exp(j phase) of these rates, in the frame of their phase, integrated in time.
+def _later(
+    times: _Times, orders: Array, force: Complex, speed: Array, natural: float, damping: float
+) -> Complex:
+    """Return mean answers in stretches to forces of orders, in the frame of their phase, integrated in time.
 
-    H has two poles; the answer of each is integrated exactly over steps in which the frequency of the force is constant.
+    H has two poles. That on the side of the frequency of the force is integrated exactly over steps in which the frequency is
+    constant; the other one is far from it and answers at once.
     """
     from scipy.signal import lfilter
 
     pole = natural * (-damping + 1j * np.sqrt(1.0 - damping**2))
     residue = natural**2 / (2j * natural * np.sqrt(1.0 - damping**2))
-    # the pole on the side of the force is integrated; the other one is far from it, and answers at once
-    ahead = (rate.imag.mean(axis=1) >= 0.0)[:, None]
-    answer = np.zeros(force.shape, complex)
-    for of_pole, of_residue, resonant in ((pole, residue, ahead), (pole.conjugate(), residue.conjugate(), ~ahead)):
-        rows, others = np.flatnonzero(resonant[:, 0]), np.flatnonzero(~resonant[:, 0])
-        if len(rows):
-            decay = np.exp(of_pole * times.step)
-            steady = of_residue * force[rows, :-1] / (rate[rows] - of_pole)
-            driven = force[rows, 1:] * steady / force[rows, :-1] - decay * steady
-            moved, _ = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * steady[:, :1])
-            answer[rows, :1] += steady[:, :1]
-            answer[rows, 1:] += moved
-        if len(others):
-            at_once = of_residue / (rate[others] - of_pole)
-            answer[others, :1] += at_once[:, :1] * force[others, :1]
-            answer[others, 1:] += at_once * force[others, 1:]
-    framed = answer * force.conj()
+    rate = 1j * np.diff(times.angle) / times.step
+    framed = np.empty(force.shape, complex)
+    at_once = np.empty((len(orders), len(speed)), complex)
+    signs = orders >= 0.0
+    for own, own_residue, rows in ((pole, residue, signs), (pole.conjugate(), residue.conjugate(), ~signs)):
+        if rows.any():
+            decay = np.exp(own * times.step)
+            steady = own_residue / (orders[rows, None] * rate - own)
+            driven = steady * (force[rows, 1:] - decay * force[rows, :-1])
+            first = steady[:, :1] * force[rows, :1]
+            framed[rows, :1] = steady[:, :1]
+            framed[rows, 1:] = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * first)[0]
+            framed[rows, 1:] *= force[rows, 1:].conj()
+            at_once[rows] = own_residue.conjugate() / (1j * np.outer(orders[rows], speed) - own.conjugate())
     sums = np.zeros(framed.shape, complex)
     np.cumsum(0.5 * (framed[:, 1:] + framed[:, :-1]), axis=1, out=sums[:, 1:])
     below = np.minimum(times.edges.astype(int), framed.shape[1] - 2)
     share = times.edges - below
     ends = sums[:, below] + share * (framed[:, below] + 0.5 * share * (framed[:, below + 1] - framed[:, below]))
-    return np.asarray(np.diff(ends, axis=1) / np.diff(times.edges))
+    return np.asarray(np.diff(ends, axis=1) / np.diff(times.edges) + at_once)
 
 
 # ---- Number of modes and waves ---------------------------------------------------------------------------------------

@@ -70,19 +70,30 @@ def move(
     error, radial = (np.zeros((len(angle), len(first))) for _ in range(2))
     error[0] = gear.output_scale * x[-1]
     for number, (rate, vectors, centre) in enumerate(_springs(gear, 0.5 * (angle[:-1] + angle[1:]), torque)):
-        slower = np.exp(-0.5 * gear.decay[:, np.newaxis] * duration[number])
-        from_rest, speed = vectors.T @ x - centre, vectors.T @ (slower * v)
-        decay = 0.5 * gear.relaxation * rate**2
-        damped = np.sqrt(rate**2 - decay**2)
-        fading = np.exp(-decay * duration[number])
-        cosine, sine = fading * np.cos(damped * duration[number]), fading * np.sin(damped * duration[number]) / damped
-        x = vectors @ (centre + cosine * from_rest + sine * (speed + decay * from_rest))
-        faster = slower * (vectors @ (cosine * speed - sine * (rate**2 * from_rest + decay * speed)))
+        faster, x = stepped(gear, x, v, duration[number], rate, vectors, centre)
         error[number + 1] = gear.output_scale * x[-1]
         radial[number + 1] = sensor @ (faster - v) / duration[number]
         v = faster
     time = np.vstack([np.zeros(len(first)), np.cumsum(duration[before:], axis=0)])
     return Motion(angle[before:], time, error[before:], radial[before:])
+
+
+def stepped(gear: Gear, x: Array, v: Array, duration: Array, rate: Array, vectors: Array, centre: Array) -> tuple[Array, Array]:
+    """Return speeds and coordinates after a step, shape (n, columns), with the springs of its middle.
+
+    Args:
+        x, v: coordinates and speeds before, shape (n, columns)
+        duration: of the step in each column [s], shape (columns,)
+        rate, vectors, centre: natural frequencies [rad/s], shape (n, 1), their shapes, shape (n, n), and rest in these shapes
+    """
+    slower = np.exp(-0.5 * gear.decay[:, np.newaxis] * duration)
+    from_rest, speed = vectors.T @ x - centre, vectors.T @ (slower * v)
+    decay = 0.5 * gear.relaxation * rate**2
+    damped = np.sqrt(rate**2 - decay**2)
+    fading = np.exp(-decay * duration)
+    cosine, sine = fading * np.cos(damped * duration), fading * np.sin(damped * duration) / damped
+    faster = slower * (vectors @ (cosine * speed - sine * (rate**2 * from_rest + decay * speed)))
+    return faster, vectors @ (centre + cosine * from_rest + sine * (speed + decay * from_rest))
 
 
 def _springs(gear: Gear, angle: Array, torque: float) -> Iterator[tuple[Array, Array, Array]]:

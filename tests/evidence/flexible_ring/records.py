@@ -68,7 +68,7 @@ class Experiment:
     @cached_property
     def lines(self) -> Lines:
         """Eigenlines over the speeds of the records."""
-        return eigenlines(self.gear, np.linspace(self.first.min(), self.last.max(), 80), self.torque)
+        return eigenlines(self.gear, np.linspace(self.first.min(), self.last.max(), 48), self.torque)
 
 
 def _counted(angle: Array, counts: int) -> Array:

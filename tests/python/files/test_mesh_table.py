@@ -156,5 +156,8 @@ def test_modes_that_cannot_be_are_refused(tmp_path: Path, text: str, reason: str
 
 def test_a_mesh_stiffness_at_the_output_needs_its_lever(tmp_path: Path) -> None:
     (tmp_path / "mesh.csv").write_text("angle [deg],torque [N.m],mesh_stiffness [N.m/rad]\n0,1,2\n")
-    with pytest.raises(ValueError, match=r"divide it by \(pitch radius x cos\(pressure angle\)\)\^2"):
+    with pytest.raises(ValueError, match=r"give lever=pitch radius x cos\(pressure angle\) \[m\]"):
         MeshTable.read(tmp_path / "mesh.csv")
+    found = MeshTable.read(tmp_path / "mesh.csv", lever=0.1)
+    assert found.mesh_stiffness is not None
+    assert found.mesh_stiffness.tolist() == pytest.approx([200.0])

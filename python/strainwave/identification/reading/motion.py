@@ -200,7 +200,7 @@ def stretches(speed: Array) -> list[slice]:
 
 def fills_record(parts: Sequence[slice], rows: int) -> bool:
     """True for stretches that make up half of the rows of a record or more."""
-    return sum(part.stop - part.start for part in parts) >= MIN_STEADY_SHARE * rows
+    return bool(sum(part.stop - part.start for part in parts) >= MIN_STEADY_SHARE * rows)
 
 
 def turns_steadily(angle: Array, speed: Array) -> bool:

@@ -15,11 +15,11 @@ from strainwave.files.entries import Entry
 from strainwave.files.gear_set import GearSet
 from strainwave.files.mesh_table import ModeTable
 from strainwave.messages import shortened
-from strainwave.orders.mesh_error import StiffnessVariation
+from strainwave.orders.mesh.error import StiffnessVariation
 
 
 class Laws(Protocol):
-    """Laws of a table, as `laws_of_mesh.MeshLaws` has them."""
+    """Laws of a table, as `MeshLaws` has them."""
 
     @property
     def kinematic_error(self) -> Any: ...

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import stiffness, variation
-from strainwave.orders.mesh_harmonics import Harmonics
-from strainwave.orders.mesh_loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
+from strainwave.orders.mesh.harmonics import Harmonics
+from strainwave.orders.mesh.loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
 from strainwave.presentation import counted
 
 Array = NDArray[np.float64]
@@ -98,6 +98,7 @@ class ErrorFit:
         sensitivity, sensitivity_sigma: relative fall of the error with the torque [1/(N.m)], and its standard deviation
         variation: of the stiffness
         noise: standard deviation of an amplitude of the error by the noise of the solver [rad]
+        misfit: root mean square over the loads of what the laws leave of each order [rad], shape (h,)
         remarks: in words
     """
 
@@ -108,6 +109,7 @@ class ErrorFit:
     sensitivity_sigma: float
     variation: StiffnessVariation
     noise: float
+    misfit: Array
     remarks: tuple[str, ...]
 
 
@@ -144,7 +146,11 @@ def error_fit(error: Harmonics, of_spring: Harmonics | None, given: StiffnessVar
         fit.sigma * noise * np.sqrt(log(error.waves.size / false_alarm)), RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0))
     )
     waves[np.abs(waves) < least] = 0.0
-    return ErrorFit(spring, wound, waves, fit.sensitivity, fit.sensitivity_sigma, varying, fit.sigma * noise, fit.remarks)
+    misfit = np.zeros(len(kept))
+    misfit[kept] = fit.misfit
+    return ErrorFit(
+        spring, wound, waves, fit.sensitivity, fit.sensitivity_sigma, varying, fit.sigma * noise, misfit, fit.remarks
+    )
 
 
 def _round(

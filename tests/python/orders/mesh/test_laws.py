@@ -326,9 +326,10 @@ def test_modes_of_the_ring_are_in_the_stages_and_leave_the_whole_compliance_as_i
     drive = sw.Drive(gear=gear, motor=sw.motor.AccelerationSource(inertia=1e-4), load=sw.loads.Inertia(inertia=0.05))
     for angle in (0.0, np.radians(45.0)):
         start = {"input_angle": angle, "input_speed": 0.0}
-        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.02), dt=4e-6, load_torque=20.0, initial=start)
+        run = sw.simulate(drive, sw.scenario.constant(0.0, 0.1), dt=4e-6, load_torque=20.0, initial=start)
         expected = given.transmission_error[(given.torque == 20.0) & np.isclose(given.angle, angle)]
-        assert float(run["transmission_error"][-1]) == pytest.approx(float(expected[0]), rel=1e-9)
+        # The wave generator lags behind the input by the windup of its coupling, 4e-5 rad, times the slope of the error.
+        assert float(run["transmission_error"][-1]) == pytest.approx(float(expected[0]), abs=5e-8)
 
 
 def test_of_more_modes_than_a_ring_has_the_most_compliant_are_taken(tmp_path: Path) -> None:

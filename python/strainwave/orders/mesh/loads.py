@@ -126,6 +126,7 @@ class LoadFit:
         variation: complex amplitudes of the relative variation of the stiffness [1], shape (h,); zeros if none is determined
         sensitivity, sensitivity_sigma: relative fall of the error with the torque [1/(N.m)], and its standard deviation
         sigma: standard deviation of an amplitude of the error over that of a wave of one load
+        misfit: root mean square over the loads of what the model leaves of each order [rad], shape (h,)
         remarks: in words
     """
 
@@ -134,6 +135,7 @@ class LoadFit:
     sensitivity: float
     sensitivity_sigma: float
     sigma: float
+    misfit: Array
     remarks: tuple[str, ...]
 
 
@@ -182,7 +184,7 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     """
     if not waves.shape[1]:
         none = np.zeros(0, complex)
-        return LoadFit(none, none, 0.0, 0.0, 1.0, ())
+        return LoadFit(none, none, 0.0, 0.0, 1.0, np.zeros(0), ())
     of_solver, noise = noise, max(noise, RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0)), 1e-300)
     varying = None if compliance is None else -torque * compliance
     models = [_model(torque, None, waves, noise, falls=False)]
@@ -202,7 +204,9 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     inverse = np.linalg.inv(chosen.columns.T @ chosen.columns)
     of_fall, of_orders = chosen.sigmas(torque, of_solver)
     variation = np.where(np.abs(variation) > SIGNIFICANCE_SIGMA * of_orders, variation, 0.0)
-    return LoadFit(chosen.coefficients[0], variation, chosen.sensitivity, of_fall, float(np.sqrt(inverse[0, 0])), remarks)
+    misfit = np.sqrt(np.mean(np.abs(waves - chosen.columns @ chosen.coefficients) ** 2, axis=0))
+    sigma = float(np.sqrt(inverse[0, 0]))
+    return LoadFit(chosen.coefficients[0], variation, chosen.sensitivity, of_fall, sigma, misfit, remarks)
 
 
 def _separates(chosen: _Model, models: Sequence[_Model], torque: Array, noise: float, of_solver: float) -> bool:
