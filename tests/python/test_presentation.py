@@ -118,7 +118,7 @@ def tuned() -> Iterator[Any]:
     yield from sw.analysis.positioning_error("csg-20-100", load=20.0)
     yield sw.tuning.lost_motion(sw.rig.printed_gear(0), swing=36.0)
     yield sw.tuning.positioning_path([0.1, 0.2], 0.01, speed=0.5, acceleration=1.0)
-    yield sw.output_torque("csg-20-100", -100.0 * np.linspace(0.0, 1e-3, 50), np.zeros(50))
+    yield sw.analysis.output_torque("csg-20-100", -100.0 * np.linspace(0.0, 1e-3, 50), np.zeros(50))
     plan = sw.tuning.plan_pulses("position-drive", 0.005)
     yield from (
         plan,

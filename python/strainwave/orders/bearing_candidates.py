@@ -1,20 +1,19 @@
 r"""Ball counts and diameters of a bearing that explain orders of the wave generator's shaft.
 
-The inner ring of the bearing in a wave generator is the lobes. With z balls, :math:`\gamma = d \cos\alpha / D` and an outer ring
-that turns by r per revolution of the input, the balls go round by
+The inner ring of the bearing in a wave generator is the lobes. With :math:`\gamma = d \cos\alpha / D` and an outer ring that turns
+by r per revolution of the input, each ball passes
 
-.. math:: c = \tfrac{1}{2} [1 - \gamma + r (1 + \gamma)]
+.. math:: p = \tfrac{1}{2} (1 + \gamma) (1 - r)
 
-(RandallAntoni2011, eqs. (1) to (4)). They pass a lobe h z (1 - c) times per revolution, h = 1, 2, …; two equal lobes leave even
-h z alone, as odd ones cancel. Balls that differ make the multiples of c where the sensor stands and of 1 - c where it goes with the
-lobes; a fault of the outer ring makes h z (c - r). One such order leaves z and γ both; two different kinds determine them.
+times per revolution (RandallAntoni2011, eqs. (1) to (4)), and z balls pass a lobe z p times. Errors of lobes and teeth have whole
+orders and multiply what the balls do: orders of a bearing are h z p + m, with h = 1, 2, … and any whole m. So an order is known
+modulo 1 only. Balls that differ make every k p. A few orders within their resolution leave many bearings: all are listed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,9 +27,13 @@ Array = NDArray[np.float64]
 
 BALL_COUNTS = range(7, 61)  # of the bearing of a wave generator (assumed)
 DIAMETER_RATIOS = (0.05, 0.35)  # d cos(alpha) / D of a ball bearing (assumed)
-MAX_HARMONICS = {"lobes": 4, "cage against the lobes": 2, "cage": 2, "outer ring": 3}
+MAX_HARMONIC = 4  # of the balls that pass a lobe
+MAX_SIDEBAND = 6  # whole orders beside it
 MAX_SIGMAS = 2.5  # standard deviations by which an order may lie beside its cause
-MAX_LISTED = 6  # candidates in words
+STEPS_PER_SIGMA = 4.0  # of the diameter ratio that are tried, for the order that depends most on it
+MAX_STEPS = 40_000
+MAX_LISTED = 4  # candidates in words
+MIN_ORDERS_FOR_STRANGER = 3  # from which one order may have another cause
 
 
 @dataclass(frozen=True)
@@ -55,26 +58,26 @@ class BearingCandidates(Presented):
     """Bearings that explain orders.
 
     Attributes:
-        candidates: all that explain as many orders, fewest balls first
-        balls: their number, if all candidates have the same and two kinds of order determine it; else None
+        candidates: all that explain the orders, of three orders and more all but one, fewest balls first
+        balls: their number, if all candidates have the same; else None
         orders: that were to be explained [1]
-        unexplained: those that no candidate explains [1]
         remarks: what is not separated, and what would separate it
     """
 
     candidates: tuple[BearingCandidate, ...]
     balls: int | None
     orders: tuple[float, ...]
-    unexplained: tuple[float, ...]
     remarks: tuple[str, ...]
 
     def _headline(self) -> str:
         orders = f"orders {listed([number(q, 5) for q in self.orders])}"
         if not self.candidates:
             return f"no ball bearing of {BALL_COUNTS[0]} to {BALL_COUNTS[-1]} balls explains {orders}"
+        if len(self.candidates) > MAX_LISTED:
+            counts = sorted({each.balls for each in self.candidates})
+            return f"{len(self.candidates)} bearings of {counts[0]} to {counts[-1]} balls explain {orders}: not separable"
         each = [f"{c.balls} balls, d cos α / D {uncertain(c.diameter_ratio, c.diameter_ratio_sigma)}" for c in self.candidates]
-        more = f", or {len(each) - MAX_LISTED} more" if len(each) > MAX_LISTED else ""
-        return f"{orders}: {'; or '.join(each[:MAX_LISTED])}{more}"
+        return f"{orders}: {'; or '.join(each)}"
 
     def _rows(self) -> Iterator[Row]:
         for each in self.candidates:
@@ -85,11 +88,11 @@ class BearingCandidates(Presented):
 def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: float = 0.0) -> BearingCandidates:
     """Return the ball counts and diameter ratios that explain orders of the shaft of a wave generator.
 
-    Every bearing of 7 to 60 balls and 0.05 to 0.35 = d cos(alpha) / D is tried. Those that explain the most orders are listed:
-    one kind of order leaves many.
+    Every bearing of 7 to 60 balls and 0.05 to 0.35 = d cos(alpha) / D is tried. Orders of 1e-3 and better are needed for few
+    candidates: some hundred revolutions.
 
     Args:
-        orders: that are no multiples of those of wave generator and teeth [1], shape (n,)
+        orders: that are no whole multiples, and no orders of the splines [1], shape (n,)
         sigma: their standard deviations [1], shape (n,)
         outer_speed: speed of the outer ring over that of the inner one [1], as in `bearing_orders`
 
@@ -98,96 +101,88 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
         ValueError: an order or a standard deviation is not positive, or their numbers differ
 
     >>> import strainwave as sw
-    >>> geometry = sw.orders.bearing_orders(balls=24, ball_diameter=5.0, pitch_diameter=44.0)
-    >>> found = sw.orders.bearing_candidates([24 * (1 - geometry.cage), 1 - geometry.cage], [1e-4, 1e-4])
-    >>> found.balls, [(each.balls, round(each.diameter_ratio, 3)) for each in found.candidates]
-    (24, [(24, 0.114)])
-    >>> found = sw.orders.bearing_candidates([24 * (1 - geometry.cage)], [1e-4])
-    >>> found.balls, [(each.balls, round(each.diameter_ratio, 3)) for each in found.candidates][:2]
-    (None, [(11, 0.215), (20, 0.336)])
+    >>> cage = sw.orders.bearing_orders(balls=23, ball_diameter=5.0, pitch_diameter=44.0).cage
+    >>> one = sw.orders.bearing_candidates([23 * (1 - cage)], [1e-4])
+    >>> one.balls, len(one.candidates) > 100
+    (None, True)
+    >>> passed = [23 * (1 - cage), 46 * (1 - cage) + 1, 7 * (1 - cage)]
+    >>> three = sw.orders.bearing_candidates(passed, [1e-5, 1e-5, 1e-5])
+    >>> any(each.balls == 23 and abs(each.diameter_ratio - 5.0 / 44.0) < 1e-4 for each in three.candidates)
+    True
     """
-    wanted, spread = (arguments.positive_series(name, values) for name, values in (("orders", orders), ("sigma", sigma)))
-    if len(wanted) != len(spread):
-        raise ValueError(f"{len(wanted)} orders have {len(spread)} standard deviations; give one for each")
+    wanted = np.atleast_1d(np.asarray(arguments.numbers("orders", orders)))
+    spread = np.atleast_1d(np.asarray(arguments.numbers("sigma", sigma)))
+    if wanted.shape != spread.shape or wanted.ndim != 1 or not wanted.size:
+        raise ValueError(f"orders and sigma must be series of one length; their shapes are {wanted.shape} and {spread.shape}")
+    if not (wanted > 0.0).all() or not (spread > 0.0).all():
+        raise ValueError("orders and their standard deviations must be positive")
     outer_speed = arguments.number("outer_speed", outer_speed, low=-0.5, high=0.5)
-    tried = [each for balls in BALL_COUNTS for each in _of_count(balls, wanted, spread, outer_speed)]
-    most = max((len(each.causes) for each in tried), default=0)
-    best = tuple(each for each in tried if len(each.causes) == most)
-    explained = {order for each in best for order, _ in each.causes}
-    counts, kinds = {each.balls for each in best}, [{cause.split(",")[0] for _, cause in each.causes} for each in best]
-    balls = counts.pop() if len(counts) == 1 and min(map(len, kinds)) > 1 else None
-    unexplained = tuple(order for order in wanted.tolist() if order not in explained)
-    return BearingCandidates(best, balls, tuple(wanted.tolist()), unexplained, tuple(_remarks(best, balls, kinds, unexplained)))
+    low, high = (0.5 * (1.0 + ratio) * (1.0 - outer_speed) for ratio in DIAMETER_RATIOS)
+    tried = [(balls, *_explained(balls, wanted, spread, low, high)) for balls in BALL_COUNTS]
+    most = max(int(count.max()) for _, _, count in tried)
+    least = most - 1 if most >= MIN_ORDERS_FOR_STRANGER else most
+    best = tuple(
+        _candidate(balls, passes[part], wanted, spread, outer_speed)
+        for balls, passes, count in tried
+        for part in _stretches(count >= max(least, 1))
+    )
+    counts = {each.balls for each in best}
+    balls = counts.pop() if len(counts) == 1 else None
+    return BearingCandidates(best, balls, tuple(wanted.tolist()), tuple(_remarks(best, balls)))
 
 
-def _of_count(balls: int, orders: Array, sigma: Array, outer: float) -> Iterator[BearingCandidate]:
-    """Yield the bearings with so many balls that explain the most orders, each with its own diameter ratio."""
-    causes = list(_causes(balls, outer))
-    fundamental = {name.split(",")[0]: name for name, _, _ in reversed(causes)}
-    found: list[tuple[float, float, list[tuple[float, str]]]] = []
-    for (place, order), (_, constant, slope) in product(enumerate(orders.tolist()), causes):
-        ratio, reach = (order - constant) / slope, float(sigma[place]) / abs(slope)
-        if not DIAMETER_RATIOS[0] <= ratio <= DIAMETER_RATIOS[1]:
-            continue
-        matched, weights = [], []
-        for other, spread in zip(orders.tolist(), sigma.tolist(), strict=True):
-            near = [(abs(other - c - s * ratio) / np.hypot(spread, reach * abs(s)), name, c, s) for name, c, s in causes]
-            lag, name, c, s = min(near)
-            if lag < MAX_SIGMAS:
-                matched.append((other, name))
-                weights.append(((other - c) / s, (s / spread) ** 2))
-        names = {name for _, name in matched}
-        complete = {name.split(",")[0] for name in names if fundamental[name.split(",")[0]] in names}
-        kept_of = [k for k, (_, name) in enumerate(matched) if name.split(",")[0] in complete]
-        if not kept_of:
-            continue
-        matched, weights = [matched[k] for k in kept_of], [weights[k] for k in kept_of]
-        total = sum(weight for _, weight in weights)
-        mean = sum(value * weight for value, weight in weights) / total
-        found.append((mean, total**-0.5, matched))
-    most = max((len(matched) for _, _, matched in found), default=0)
-    kept: list[tuple[float, float]] = []
-    for mean, spread, matched in found:
-        if len(matched) == most and not any(abs(mean - other) < MAX_SIGMAS * np.hypot(spread, of) for other, of in kept):
-            kept.append((mean, spread))
-            yield BearingCandidate(balls, mean, spread, tuple(matched))
+def _explained(balls: int, orders: Array, sigma: Array, low: float, high: float) -> tuple[Array, Array]:
+    """Return passes of a ball that are tried, and how many orders each explains."""
+    slope = max(MAX_HARMONIC * balls, float(orders.max()) / low)
+    steps = min(int((high - low) * slope / float(sigma.min()) * STEPS_PER_SIGMA) + 2, MAX_STEPS)
+    passes = np.linspace(low, high, steps)
+    reach = 0.5 * (passes[1] - passes[0])
+    count = np.zeros(steps)
+    for order, spread in zip(orders.tolist(), sigma.tolist(), strict=True):
+        lag = np.full(steps, np.inf)
+        for h in range(1, MAX_HARMONIC + 1):
+            beside = order - h * balls * passes
+            whole = np.clip(np.round(beside), -MAX_SIDEBAND, MAX_SIDEBAND)
+            lag = np.minimum(lag, np.abs(beside - whole) - reach * h * balls)
+        times = np.maximum(np.round(order / passes), 1.0)
+        lag = np.minimum(lag, np.abs(order - times * passes) - reach * times)
+        count += lag < MAX_SIGMAS * spread
+    return passes, count
 
 
-def _causes(balls: int, outer: float) -> Iterator[tuple[str, float, float]]:
-    """Yield name, and constant and slope over the diameter ratio, of each order of a bearing."""
-    cage = 0.5 * (1.0 + outer), 0.5 * (outer - 1.0)
-    passing = 1.0 - cage[0], -cage[1]
-    bases = {
-        "lobes": (balls * passing[0], balls * passing[1]),
-        "cage against the lobes": passing,
-        "cage": cage,
-        "outer ring": (balls * (cage[0] - outer), balls * cage[1]),
-    }
-    for name, (constant, slope) in bases.items():
-        for harmonic in range(1, MAX_HARMONICS[name] + 1):
-            if name == "lobes" and harmonic * balls % 2:
-                continue
-            times = "" if harmonic == 1 else f", {harmonic} times"
-            yield f"{name}{times}", harmonic * constant, harmonic * slope
+def _stretches(chosen: NDArray[np.bool_]) -> Iterator[slice]:
+    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
+    return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
 
 
-def _remarks(
-    best: tuple[BearingCandidate, ...], balls: int | None, kinds: list[set[str]], unexplained: tuple[float, ...]
-) -> Iterator[str]:
+def _candidate(balls: int, passes: Array, orders: Array, sigma: Array, outer: float) -> BearingCandidate:
+    middle = float(0.5 * (passes[0] + passes[-1]))
+    scale = 2.0 / (1.0 - outer)
+    spread = max(float(passes[-1] - passes[0]) / (2.0 * MAX_SIGMAS), float(sigma.min()) / (MAX_HARMONIC * balls))
+    causes = tuple(_causes(balls, middle, float(np.ptp(passes)), orders, sigma))
+    return BearingCandidate(balls, scale * middle - 1.0, scale * spread, causes)
+
+
+def _causes(balls: int, passes: float, reach: float, orders: Array, sigma: Array) -> Iterator[tuple[float, str]]:
+    """Yield each order that a bearing explains, with its simplest cause."""
+    for order, spread in zip(orders.tolist(), sigma.tolist(), strict=True):
+        near = []
+        for h in range(1, MAX_HARMONIC + 1):
+            beside = order - h * balls * passes
+            whole = round(beside)
+            if abs(whole) <= MAX_SIDEBAND and abs(beside - whole) < MAX_SIGMAS * spread + reach * h * balls:
+                side = f" {'+' if whole > 0 else '-'} {abs(whole)}" if whole else ""
+                near.append((h + abs(whole), f"{'' if h == 1 else f'{h} times '}balls past a lobe{side}"))
+        times = max(round(order / passes), 1)
+        if abs(order - times * passes) < MAX_SIGMAS * spread + reach * times:
+            near.append((2 + times, f"{times} times a ball past a lobe"))
+        if near:
+            yield order, min(near)[1]
+
+
+def _remarks(best: tuple[BearingCandidate, ...], balls: int | None) -> Iterator[str]:
     if best and balls is None:
-        counts = sorted({each.balls for each in best})
-        why = (
-            "the orders are of one kind"
-            if max(map(len, kinds)) == 1
-            else "several bearings explain them within their resolution"
-        )
         yield (
-            f"{len(counts)} counts of balls are not separable, {counts[0]} to {counts[-1]}: {why}; count the balls, or measure the "
-            "order of the cage over more revolutions"
+            f"{len({each.balls for each in best})} counts of balls are not separable: count the balls, or record more revolutions, "
+            "as orders are resolved to one over their number"
         )
-        yield "lobes that differ, or an odd count that they pass once, have not been tried: equal lobes leave even multiples"
-    if unexplained:
-        yield f"orders {listed([number(order, 5) for order in unexplained])} are not explained by these bearings"
-
-
-__all__ = ["BearingCandidate", "BearingCandidates", "bearing_candidates"]

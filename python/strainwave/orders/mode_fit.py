@@ -18,7 +18,7 @@ between. So the fit is of lines, with real slopes s:
 .. math:: X_q(\Omega) = b_q + c_q \Omega^2 + \sum_k g_{qk} H_k((q - s_k) \Omega).
 
 Of one order the peak at Ωp determines (q - s) Ωp = ω0 alone, of two orders s and ω0. Of a sensor that stands on the ring s = 0, and
-the mobility is a second column, so that forces that grow with the speed squared are covered.
+forces may grow with the speed squared: the mobility is a second column. Elsewhere it is a small one, for dampers.
 
 Coefficients are linear; of each line only the orders count that it makes more probable. Lines are compared by the evidence with
 normal priors of the coefficients, whose scale is that of the amplitudes (Bishop, "Pattern recognition and machine learning"
@@ -27,7 +27,7 @@ normal priors of the coefficients, whose scale is that of the amplitudes (Bishop
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import log, tau
@@ -51,6 +51,9 @@ SEARCH_STEP_SHARE = 0.7  # of the damping, from one frequency of the search to t
 SAME_START = 0.03  # of the frequency, between first values of the same slope
 MAX_SEARCH_SPEEDS = 120  # stretches, that first values are searched in
 LEAKING_SHARE = 1e-3  # of the change of an amplitude between stretches, that other orders get
+MIN_NOISE_SHARE = 0.02  # of the changes of an order along the speed: forces and what passes by are no better known (assumed)
+MOBILITY_SHARE = 0.2  # of the receptance, that a force through a damper, or one that grows with the speed, adds
+MIN_OUTPUT_TURN = 0.5  # rad of the output, from which the orders of both splines differ
 BASE_PRIOR = 30.0  # of what passes by the lines, over the root mean square of an order
 MAX_SEARCH_STEPS = 20  # of a fit: what needs more is no peak
 MAX_PROPOSED = 200  # first values of the search
@@ -59,8 +62,13 @@ MAX_EVIDENCE_LAG = 40.0  # of the natural logarithm of the odds, by which the se
 MIN_ORDER_EVIDENCE = 4.0  # natural logarithm of the odds, from which an order counts for a line
 MIN_EVIDENCE_OF_MODE = 10.0  # natural logarithm of the odds of one line more
 MAX_MODES = 8
+MAX_REPEATS = 4  # of a fit with another noise
+MIN_DECREASE = 0.02  # of the logarithm of the noise of all orders
+PEAK_WIDTHS = 4.0  # half widths from a peak, within which another one only corrects its shape
 MAX_ROUNDS = 4  # of adding and exchanging modes
 MIN_LEAD_OF_RIVAL = 2.0  # natural logarithm of the odds, from which a mode is exchanged
+MAX_SNAPPED = 0.3  # of a slope to a whole one, that is tried
+WHOLE_SLOPE_SIGMA = 0.01  # of a whole slope: rings are pressed a little out of round (assumed)
 MAX_FROM_WHOLE = 0.12  # of a slope, that counts as whole
 WHOLE_SLOPE_ODDS = 20.0  # of a slope of a whole number of waves to another one that fits as well (assumed)
 MIN_SLOPE_GAP = 0.5  # between the slopes of rivals
@@ -70,7 +78,8 @@ MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
 SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
 MIN_CHANGE = 1e-3  # of a receptance over its static one, along the speeds: less is that of what passes by
 MAX_KEPT_ANSWERS = 64  # of lines: a derivative changes one of several
-MAX_STEPS = 2**14  # of time, in a run-up
+MAX_STEPS = 6000  # of time, in a run-up
+CONSTANT_SPEED_SPREAD = 0.01  # of the speed in a recording, up to which a resonance answers at once
 STEPS_PER_STRETCH = 8.0  # of time, in the shortest stretch
 
 
@@ -82,12 +91,14 @@ class Line(NamedTuple):
         damping: as a share of the critical one [1]
         slope: of its first line over the speed [1]; the second one has the opposite slope
         acts_on: orders whose coefficient is not zero, of the first line and then of the second one
+        whole: True if the slope is taken for that of a whole number of waves
     """
 
     frequency: float
     damping: float
     slope: float
     acts_on: tuple[bool, ...]
+    whole: bool = False
 
     @property
     def acts(self) -> NDArray[np.bool_]:
@@ -122,11 +133,21 @@ class Fitted:
 
 @dataclass(frozen=True)
 class _Times:
-    """Even times of a run-up: phase step and stretch of each, and the mean over a stretch."""
+    """Even times of recordings whose speed changes, one recording after the other.
+
+    Attributes:
+        step: between two times of a recording [s]
+        angle: of the shaft [rad], shape (n,)
+        since: steps since the beginning of the recording, shape (n,)
+        first, last: place of the beginning and the end of each stretch in these times, shape (k,)
+        rows: stretches that these are
+    """
 
     step: float
     angle: Array
-    edges: Array
+    since: Array
+    first: Array
+    last: Array
     rows: NDArray[np.int_]
 
 
@@ -149,11 +170,13 @@ class ModeProblem:
     @cached_property
     def weight(self) -> Array:
         """Usual over expected standard deviation of an amplitude; 0 if a stretch does not show the order; shape (orders, k)."""
-        shown = np.isfinite(self.spectrum.amplitude)
-        changes = np.abs(np.diff(np.nan_to_num(self.spectrum.amplitude), axis=1)).max(axis=0, initial=0.0)
+        amplitude = self.spectrum.amplitude
+        shown = np.isfinite(amplitude)
+        changes = np.abs(np.diff(np.nan_to_num(amplitude), axis=1)).max(axis=0, initial=0.0)
         near = np.maximum(np.append(changes, 0.0), np.append(0.0, changes))
-        sigma = np.hypot(self.spectrum.sigma, LEAKING_SHARE * near)
-        return np.where(shown, np.median(sigma) / np.maximum(sigma, 1e-3 * np.median(sigma) + 1e-300), 0.0)
+        sigma = np.hypot(self.spectrum.sigma, LEAKING_SHARE * near) * np.ones((len(amplitude), 1))
+        middle = np.median(sigma, axis=1)[:, None]
+        return np.where(shown, middle / np.maximum(sigma, 1e-3 * middle + 1e-300), 0.0)
 
     @cached_property
     def count(self) -> Array:
@@ -169,49 +192,62 @@ class ModeProblem:
 
     @cached_property
     def base(self) -> Complex:
-        """What passes by the modes: a constant and a share that grows with the speed squared, shape (orders, k, 2)."""
+        """What passes by the modes, weighted, shape (orders, k, c).
+
+        A constant, a share that grows with the speed squared, and the same order against the spline that turns with the output.
+        """
         square = (self.spectrum.speed / np.abs(self.spectrum.speed).max()) ** 2
-        both = np.stack([np.ones_like(square), square], axis=1).astype(complex)
-        return np.broadcast_to(both, (len(self.spectrum.orders), *both.shape))
+        columns = [np.ones((len(self.scale), len(square)), complex), np.broadcast_to(square, (len(self.scale), len(square)))]
+        if np.ptp(self.spectrum.output) > MIN_OUTPUT_TURN:
+            against = np.outer(self.spectrum.orders, self.spectrum.output)
+            columns += [np.exp(1j * against), np.exp(-1j * against)]
+        return np.stack(columns, axis=2) * self.weight[..., None]
 
     # ---- Columns ---------------------------------------------------------------------------------------------------
 
     @cached_property
-    def _times(self) -> list[_Times]:
-        return [times for place in range(len(self.spectrum.recordings)) if (times := self._times_of(place)) is not None]
-
-    def _times_of(self, place: int) -> _Times | None:
-        """Return even times of a recording whose speed changes; None of one at constant speed."""
-        recording, stretches = self.spectrum.recordings[place], self.spectrum.stretches
-        rows = np.flatnonzero(stretches[:, 2] == place)
+    def _times(self) -> _Times | None:
+        """Times of the recordings whose speed changes; None if none does."""
+        spectrum = self.spectrum
+        varying = [
+            place
+            for place, recording in enumerate(spectrum.recordings)
+            if np.ptp(recording.speed) > CONSTANT_SPEED_SPREAD * recording.speed.max()
+        ]
+        rows = np.flatnonzero(np.isin(spectrum.stretches[:, 2], varying))
         if not len(rows):
             return None
-        speed = recording.speed[stretches[rows[0], 0] : stretches[rows[-1], 1]]
-        if np.ptp(speed) < 0.02 * speed.max():
-            return None
-        duration = recording.time[-1] - recording.time[0]
-        rate = float(speed.max() - speed.min()) / duration * (float(self.spectrum.orders.max()) + MAX_SLOPE)
-        step = float(np.sqrt(2.0 * SLOW_SWEEP_SHARE / max(rate, 1e-300)))
-        begins = recording.time[np.append(stretches[rows, 0], stretches[rows[-1], 1] - 1)]
-        step = min(step, float(np.diff(begins).min()) / STEPS_PER_STRETCH)
-        steps = min(int(duration / step) + 2, MAX_STEPS)
-        time = np.linspace(recording.time[0], recording.time[-1], steps)
-        edges = (begins - time[0]) / (time[1] - time[0])
-        return _Times(float(time[1] - time[0]), np.interp(time, recording.time, recording.angle), edges, rows)
+        kept = [spectrum.recordings[place] for place in varying]
+        duration = [float(each.time[-1] - each.time[0]) for each in kept]
+        rate = max(float(np.ptp(each.speed)) / span for each, span in zip(kept, duration, strict=True))
+        turned = SLOW_SWEEP_SHARE / (rate * (float(spectrum.orders.max()) + MAX_SLOPE))
+        begins, ends = (
+            np.array([spectrum.recordings[place].time[at] for at, place in spectrum.stretches[rows][:, [column, 2]]])
+            for column in (0, 1)
+        )
+        step = min(float(np.sqrt(2.0 * turned)), float((ends - begins).min()) / STEPS_PER_STRETCH)
+        step = max(step, sum(duration) / MAX_STEPS)
+        grids = [each.time[0] + step * np.arange(int(span / step) + 2) for each, span in zip(kept, duration, strict=True)]
+        angle = [_extended(grid, each.time, each.angle) for grid, each in zip(grids, kept, strict=True)]
+        starts = dict(zip(varying, np.cumsum([0, *map(len, grids[:-1])]).tolist(), strict=True))
+        offset = np.array([starts[place] for place in spectrum.stretches[rows, 2]])
+        origin = np.array([spectrum.recordings[place].time[0] for place in spectrum.stretches[rows, 2]])
+        first, last = (offset + (at - origin) / step for at in (begins, ends))
+        since = np.concatenate([np.arange(len(grid), dtype=float) for grid in grids])
+        return _Times(step, np.concatenate(angle), since, first, last, rows)
 
     @cached_property
-    def _waves(self) -> list[tuple[_Times, Complex]]:
-        """Times of each run-up, with the waves of the orders, shape (orders, steps)."""
-        return [(times, np.exp(1j * self.spectrum.orders[:, None] * times.angle)) for times in self._times]
+    def _waves(self) -> Complex:
+        """Waves of the orders at the times, shape (orders, steps)."""
+        return np.exp(1j * np.outer(self.spectrum.orders, np.zeros(0) if self._times is None else self._times.angle))
 
     def _answers(self, slope: float, frequency: float, damping: float) -> Complex:
         """Return the mean receptance in each stretch of forces of the orders, seen from a line, shape (orders, k)."""
-        orders = self.spectrum.orders - slope
+        orders, times = self.spectrum.orders - slope, self._times
         answer = _receptance(np.outer(orders, self.spectrum.speed), frequency, damping)
-        for times, waves in self._waves:
-            force = waves * np.exp(-1j * slope * times.angle)
-            speed = self.spectrum.speed[times.rows]
-            answer[:, times.rows] = _later(times, orders, force, speed, frequency, damping)
+        if times is not None:
+            force = self._waves * np.exp(-1j * slope * times.angle)
+            answer[:, times.rows] = _later(times, orders, force, self.spectrum.speed[times.rows], frequency, damping)
         return answer
 
     @cached_property
@@ -219,34 +255,36 @@ class ModeProblem:
         return {}
 
     def _answer(self, line: Line, part: int) -> tuple[Complex, Array]:
-        """Return a column of a mode, weighted, and its size for each order, shapes (orders, k) and (orders,)."""
+        """Return receptance and mobility of a line of a mode, weighted, and their sizes, shapes (orders, k, 2), (orders, 2)."""
         slope = line.slope * (1.0 - 2.0 * part)
-        key = line.frequency, line.damping, float(part) if self.stands else slope
+        key = line.frequency, line.damping, slope
         if key not in self._kept:
             if len(self._kept) >= MAX_KEPT_ANSWERS:
                 self._kept.clear()
-            orders = self.spectrum.orders
-            answer = self._answers(0.0 if self.stands else slope, line.frequency, line.damping)
-            if self.stands and part:  # mobility
-                answer = answer * 1j * np.outer(orders, self.spectrum.speed) / line.frequency
-            self._kept[key] = answer * self.weight, self._size(answer)
+            receptance = self._answers(slope, line.frequency, line.damping)
+            ratio = np.outer(self.spectrum.orders - slope, self.spectrum.speed) / line.frequency
+            size = self._size(receptance)
+            both = np.stack([receptance, 1j * ratio * receptance], axis=2) * self.weight[..., None]
+            self._kept[key] = both, np.stack([size, size / (1.0 if self.stands else MOBILITY_SHARE)], axis=1)
         return self._kept[key]
 
     def _columns(self, lines: Sequence[Line]) -> tuple[Complex, Array]:
         """Return all weighted columns with their prior standard deviations, shapes (orders, k, c) and (orders, c).
 
-        A mode has two columns, of which one that acts on no order is zero.
+        A mode has four columns, receptance and mobility of both lines; those that act on no order are zero.
         """
-        columns = np.zeros((*self.weight.shape, 2 + 2 * len(lines)), complex)
-        priors = np.zeros((len(self.scale), 2 + 2 * len(lines)))
-        columns[..., :2] = self.base * self.weight[..., None]
-        priors[:, :2] = BASE_PRIOR * self._mean_size[:, None]
-        for place, line in enumerate(lines, 1):
+        own = self.base.shape[2]
+        columns = np.zeros((*self.weight.shape, own + 4 * len(lines)), complex)
+        priors = np.zeros((len(self.scale), own + 4 * len(lines)))
+        columns[..., :own] = self.base
+        priors[:, :own] = BASE_PRIOR * self._mean_size[:, None]
+        for k, line in enumerate(lines):
             for part, acts in enumerate(line.acts.T):
                 if acts.any():
-                    columns[..., 2 * place + part], size = self._answer(line, part)
-                    live = acts & (size > MIN_CHANGE)
-                    priors[:, 2 * place + part] = np.where(live, self.scale / size, 0.0)
+                    place = slice(own + 4 * k + 2 * part, own + 4 * k + 2 * part + 2)
+                    columns[..., place], size = self._answer(line, part)
+                    live = acts & (size[:, 0] > MIN_CHANGE)
+                    priors[:, place] = np.where(live[:, None], self.scale[:, None] / size, 0.0)
         return columns, priors
 
     @cached_property
@@ -288,17 +326,32 @@ class ModeProblem:
         if lines and free is None:
             jacobian = self._jacobian(lines, noise, correlated)
             spread = np.linalg.pinv(jacobian.T @ jacobian)
-        shape = (len(self.scale), len(lines), 2)
-        parts = values[:, 2:].reshape(shape)
-        variance = np.einsum("qcc->qc", covariance).real[:, 2:].reshape(shape)
-        sigma = (noise * np.sqrt(correlated))[:, None, None] * np.sqrt(np.maximum(variance, 0.0))
+        parts, sigma = self._parts(lines, values, covariance)
+        sigma *= (noise * np.sqrt(correlated))[:, None, None]
         with np.errstate(divide="ignore", invalid="ignore"):
             amplitude = np.where(self.weight > 0.0, self.measured - left / self.weight, complex("nan"))
-        freedom = np.maximum(self.count - 2.0 - (prior[:, 2:] > 0.0).sum(axis=1), 1.0)
+        freedom = np.maximum(self.count - (prior > 0.0).sum(axis=1), 1.0)
         own = np.sqrt((np.abs(left) ** 2).sum(axis=1) / freedom)
         length = np.array([_correlation(each[used > 0.0]) for each, used in zip(left, self.weight, strict=True)])
         evidence = self._evidence(lines, noise, correlated, spread)
         return Fitted(lines, evidence, self._of_frequency(lines, spread), parts, sigma, amplitude, own, length)
+
+    def _parts(self, lines: Sequence[Line], values: Complex, covariance: Complex) -> tuple[Complex, Array]:
+        """Return the coefficients at resonance, of receptance and mobility together, and their deviations for noise 1.
+
+        In a narrow peak the mobility is j times the receptance, so that only both together are determined.
+        """
+        own = self.base.shape[2]
+        parts = np.zeros((len(self.scale), len(lines), 2), complex)
+        sigma = np.zeros(parts.shape)
+        for k, line in enumerate(lines):
+            for part, slope in enumerate((line.slope, -line.slope)):
+                place = slice(own + 4 * k + 2 * part, own + 4 * k + 2 * part + 2)
+                both = np.stack([np.ones(len(self.scale)), 1j * np.sign(self.spectrum.orders - slope)], axis=1)
+                parts[:, k, part] = (both * values[:, place]).sum(axis=1)
+                variance = np.einsum("qc,qcd,qd->q", both, covariance[:, place, place], both.conj()).real
+                sigma[:, k, part] = np.sqrt(np.maximum(variance, 0.0))
+        return parts, sigma
 
     def _evidence(self, lines: Sequence[Line], noise: Array, correlated: Array, spread: Array) -> float:
         """Return the logarithm of the evidence, its noise integrated over, with Laplace's method for the searched values."""
@@ -315,7 +368,7 @@ class ModeProblem:
         occam = 0.0
         if len(spread):
             ranges = [
-                log(self._range[1] / self._range[0]),
+                log(self.speeds[1] / self.speeds[0]),
                 log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0]),
                 SLOPE_PRIOR * np.sqrt(tau),
             ]
@@ -324,7 +377,7 @@ class ModeProblem:
         return float(np.sum(fitted - size)) + occam
 
     @cached_property
-    def _range(self) -> tuple[float, float]:
+    def speeds(self) -> tuple[float, float]:
         """Lowest and highest speed at which a peak is looked for [rad/s]."""
         return 0.9 * float(self.spectrum.speed.min()), 1.15 * float(self.spectrum.speed.max())
 
@@ -333,7 +386,7 @@ class ModeProblem:
 
         searched = [lines[k] for k in free]
         reference = [self._reference(line) for line in searched]
-        low, high = np.log(self._range), np.log(DAMPING_BOUNDS)
+        low, high = np.log(self.speeds), np.log(DAMPING_BOUNDS)
         ends = [[low[0] - 0.2, high[0], -MAX_SLOPE], [low[1] + 0.2, high[1], MAX_SLOPE]]
         if self.stands:
             ends = [[*each[:2]] for each in ends]
@@ -358,7 +411,7 @@ class ModeProblem:
         own = line.acts[:, 0]
         orders = self.spectrum.orders[own] if own.any() else self.spectrum.orders
         peaks = line.frequency / np.maximum(np.abs(orders - line.slope), MIN_PASSES)
-        low, high = self._range
+        low, high = self.speeds
         return float(orders[int(np.argmin(np.abs(np.log(peaks / (0.3 * low + 0.7 * high)))))])
 
     def _values(self, lines: Sequence[Line], reference: Sequence[float]) -> Array:
@@ -397,7 +450,7 @@ class ModeProblem:
         with np.errstate(divide="ignore", invalid="ignore"):
             costs = np.where(prior > 0.0, values / prior, 0.0) * noise[:, None]
         both = np.concatenate([left, costs], axis=1) * scale[:, None]
-        return np.concatenate([both.real.ravel(), both.imag.ravel(), [line.slope / SLOPE_PRIOR for line in lines]])
+        return np.concatenate([both.real.ravel(), both.imag.ravel(), [_slope_cost(line) for line in lines]])
 
     def _jacobian(self, lines: Sequence[Line], noise: Array, correlated: Array) -> Array:
         reference = [self._reference(line) for line in lines]
@@ -426,7 +479,7 @@ class ModeProblem:
             own = (self.weight * self.measured)[q, ::every]
             bases.append(basis)
             targets.append(own - basis @ (basis.conj().T @ own))
-        low, high = self._range
+        low, high = self.speeds
         slopes = (0,) if self.stands else SEARCH_SLOPES
         gaps = [abs(order - slope) for order in orders.tolist() for slope in slopes]
         least, most = log(max(min(gap for gap in gaps if gap > 0.0), MIN_PASSES) * low), log(max(gaps) * high)
@@ -457,7 +510,7 @@ class ModeProblem:
                     total = own.sum(axis=0) + second.sum(axis=0)
                     peaks = np.flatnonzero((total[1:-1] >= total[:-2]) & (total[1:-1] > total[2:])) + 1
                     for k in peaks[total[peaks] > 0.0].tolist():
-                        acts = (*(own[:, k] > 0.0).tolist(), *((own if self.stands else second)[:, k] > 0.0).tolist())
+                        acts = (*(own[:, k] > 0.0).tolist(), *(second[:, k] > 0.0).tolist())
                         found.append((float(total[k]), Line(float(frequency[k]), damping, float(slope), acts)))
         found.sort(key=lambda each: (-each[0], abs(each[1].slope)))
         kept: list[tuple[float, Line]] = []
@@ -505,7 +558,9 @@ def _later(
 
     pole = natural * (-damping + 1j * np.sqrt(1.0 - damping**2))
     residue = natural**2 / (2j * natural * np.sqrt(1.0 - damping**2))
-    rate = 1j * np.diff(times.angle) / times.step
+    rate = 1j * np.diff(times.angle, append=2.0 * times.angle[-1] - times.angle[-2]) / times.step
+    begins = np.flatnonzero(times.since == 0.0)
+    rate[begins[1:] - 1] = rate[begins[1:] - 2]
     framed = np.empty(force.shape, complex)
     at_once = np.empty((len(orders), len(speed)), complex)
     signs = orders >= 0.0
@@ -513,18 +568,32 @@ def _later(
         if rows.any():
             decay = np.exp(own * times.step)
             steady = own_residue / (orders[rows, None] * rate - own)
-            driven = steady * (force[rows, 1:] - decay * force[rows, :-1])
-            first = steady[:, :1] * force[rows, :1]
-            framed[rows, :1] = steady[:, :1]
-            framed[rows, 1:] = lfilter([1.0], [1.0, -decay], driven, axis=1, zi=decay * first)[0]
-            framed[rows, 1:] *= force[rows, 1:].conj()
+            driven = np.zeros(steady.shape, complex)
+            driven[:, 1:] = steady[:, :-1] * (force[rows, 1:] - decay * force[rows, :-1])
+            driven[:, begins] = 0.0
+            answer = lfilter([1.0], [1.0, -decay], driven, axis=1)
+            # each recording begins as if its speed had been constant before, not with what the recording before it left
+            before = np.concatenate([np.zeros((len(answer), 1)), answer[:, begins[1:] - 1]], axis=1)
+            first = steady[:, begins] * force[np.ix_(rows, begins)] - decay * before
+            lengths = np.diff(np.append(begins, len(times.since)))
+            answer += np.repeat(first, lengths, axis=1) * np.exp(own * times.step * times.since)
+            framed[rows] = answer * force[rows].conj()
             at_once[rows] = own_residue.conjugate() / (1j * np.outer(orders[rows], speed) - own.conjugate())
     sums = np.zeros(framed.shape, complex)
     np.cumsum(0.5 * (framed[:, 1:] + framed[:, :-1]), axis=1, out=sums[:, 1:])
-    below = np.minimum(times.edges.astype(int), framed.shape[1] - 2)
-    share = times.edges - below
-    ends = sums[:, below] + share * (framed[:, below] + 0.5 * share * (framed[:, below + 1] - framed[:, below]))
-    return np.asarray(np.diff(ends, axis=1) / np.diff(times.edges) + at_once)
+    ends = []
+    for at in (times.first, times.last):
+        below = np.minimum(at.astype(int), framed.shape[1] - 2)
+        share = at - below
+        change = framed[:, below + 1] - framed[:, below]
+        ends.append(sums[:, below] + share * (framed[:, below] + 0.5 * share * change))
+    return np.asarray((ends[1] - ends[0]) / (times.last - times.first) + at_once)
+
+
+def _extended(at: Array, time: Array, angle: Array) -> Array:
+    """Return the angle at times, past its end with its last speed."""
+    speed = (angle[-1] - angle[-2]) / (time[-1] - time[-2])
+    return np.interp(at, time, angle) + speed * np.maximum(at - time[-1], 0.0)
 
 
 # ---- Number of modes and waves ---------------------------------------------------------------------------------------
@@ -565,7 +634,7 @@ def selected(problem: ModeProblem) -> Selected:
             break
     if len(others) < len(best.lines):
         others = tuple(_others(problem, best, place) for place in range(len(best.lines)))
-    return Selected(best, others)
+    return Selected(_with_whole_slopes(problem, best), others)
 
 
 def _added(problem: ModeProblem, best: Fitted) -> Fitted:
@@ -579,18 +648,74 @@ def _added(problem: ModeProblem, best: Fitted) -> Fitted:
             if gain < proposed[0][0] - MAX_EVIDENCE_LAG:
                 break
             trial = problem.fit((*best.lines, line), noise, white, own)
-            tried.append(problem.fit(trial.lines, _noise(trial, problem), trial.correlated, own))
+            trial = problem.fit(trial.lines, _noise(trial, problem), trial.correlated, own)
+            if not _corrects(problem, trial.lines[-1], best.lines):
+                tried.append(trial)
         if not tried:
             break
         least = min(tried, key=lambda each: float(np.sum(np.log(each.noise) * problem.count)))
         noise = _noise(least, problem)
         same = [problem.fit(each.lines, noise, least.correlated, own) for each in tried]
-        before = problem.fit(best.lines, noise, least.correlated)
         winner = _pruned(problem, max(same, key=lambda each: each.evidence + _prior(each.lines[-1])))
-        winner = problem.fit(winner.lines, noise, least.correlated)
+        winner = _settled(problem, winner)
+        if len(winner.lines) <= len(best.lines) or any(_corrects(problem, *each) for each in _each_beside(winner.lines)):
+            break
+        noise = _noise(winner, problem)
+        before = problem.fit(best.lines, noise, winner.correlated)
+        winner = problem.fit(winner.lines, noise, winner.correlated)
         if winner.evidence - before.evidence < MIN_EVIDENCE_OF_MODE:
             break
         best = winner
+    return best
+
+
+def _settled(problem: ModeProblem, fit: Fitted) -> Fitted:
+    """Return a fit repeated with the noise that it leaves, until that no longer decreases."""
+    for _ in range(MAX_REPEATS):
+        again = problem.fit(fit.lines, _noise(fit, problem), fit.correlated)
+        before, after = (float(np.sum(np.log(_noise(each, problem)))) for each in (fit, again))
+        fit = again
+        if after > before - MIN_DECREASE:
+            break
+    return fit
+
+
+def _each_beside(lines: Sequence[Line]) -> Iterator[tuple[Line, Sequence[Line]]]:
+    """Yield each mode with those that act on more orders."""
+    for line in lines:
+        yield line, [other for other in lines if sum(other.acts_on) > sum(line.acts_on)]
+
+
+def _corrects(problem: ModeProblem, line: Line, others: Sequence[Line]) -> bool:
+    """Return True if all peaks of a line lie in peaks of others, whose shape it only corrects."""
+    orders = problem.spectrum.orders
+
+    def peaks(of: Line) -> list[tuple[int, float]]:
+        gaps = np.abs(orders[:, None] - np.array([of.slope, -of.slope]))
+        return [(q, of.frequency / gaps[q, part]) for q, part in np.argwhere(of.acts & (gaps > MIN_PASSES)).tolist()]
+
+    near = [(q, peak, PEAK_WIDTHS * max(other.damping, line.damping)) for other in others for q, peak in peaks(other)]
+    low, high = problem.speeds
+    inside = [(q, peak) for q, peak in peaks(line) if low < peak < high]
+    return bool(inside) and all(
+        any(order == q and abs(peak / at - 1.0) < reach for order, at, reach in near) for q, peak in inside
+    )
+
+
+def _slope_cost(line: Line) -> float:
+    """Return by how many standard deviations a slope lies off what is expected."""
+    return (line.slope - round(line.slope)) / WHOLE_SLOPE_SIGMA if line.whole else line.slope / SLOPE_PRIOR
+
+
+def _with_whole_slopes(problem: ModeProblem, best: Fitted) -> Fitted:
+    """Return the fit in which slopes are those of whole numbers of waves, as far as that is as probable."""
+    for place, line in enumerate(best.lines):
+        if problem.stands or abs(line.slope - round(line.slope)) > MAX_SNAPPED:
+            continue
+        lines = (*best.lines[:place], line._replace(whole=True), *best.lines[place + 1 :])
+        snapped = problem.fit(lines, _noise(best, problem), best.correlated)
+        free = problem.fit(best.lines, _noise(best, problem), best.correlated)
+        best = snapped if snapped.evidence + log(WHOLE_SLOPE_ODDS) > free.evidence else free
     return best
 
 
@@ -600,7 +725,7 @@ def _prior(line: Line) -> float:
 
 
 def _noise(fit: Fitted, problem: ModeProblem) -> Array:
-    return np.maximum(fit.noise, 1e-9 * problem.scale)
+    return np.maximum(fit.noise, MIN_NOISE_SHARE * problem.scale)
 
 
 def _acting(fit: Fitted) -> tuple[Line, ...]:
@@ -624,20 +749,20 @@ def _pruned(problem: ModeProblem, fit: Fitted) -> Fitted:
         if not any(_same_mode(line, other) for other in single):
             single.append(line)
     pruned = [_acting_anywhere(problem, fit, lines) for lines in {tuple(single): None, fit.lines: None}]
-    return max(pruned, key=lambda each: problem.fit(each.lines, _noise(pruned[-1], problem), fit.correlated).evidence)
+    last = pruned[-1]
+    return max(pruned, key=lambda each: problem.fit(each.lines, _noise(last, problem), last.correlated, ()).evidence)
 
 
 def _acting_anywhere(problem: ModeProblem, fit: Fitted, lines: Sequence[Line]) -> Fitted:
     count, everywhere = len(problem.scale), []
     for line in lines:
         alone = not any(_same_mode(line, other) for other in lines if other is not line)
-        both = problem.stands or (alone and abs(line.slope) > MIN_SLOPE_OF_BOTH)
+        both = not problem.stands and (alone and abs(line.slope) > MIN_SLOPE_OF_BOTH)
         everywhere.append(line._replace(acts_on=(True,) * count + (both,) * count))
-    trial = problem.fit(everywhere, _noise(fit, problem), fit.correlated, ())
+    trial = problem.fit(everywhere, _noise(fit, problem), np.ones(count), ())
+    trial = problem.fit(everywhere, _noise(trial, problem), trial.correlated, ())
     acting = tuple(line for line in _acting(trial) if any(line.acts_on))
-    if problem.stands:
-        acting = tuple(line._replace(acts_on=2 * tuple(line.acts.any(axis=1).tolist())) for line in acting)
-    return problem.fit(acting, _noise(fit, problem), fit.correlated)
+    return problem.fit(acting, _noise(trial, problem), trial.correlated)
 
 
 def _same_mode(one: Line, other: Line) -> bool:

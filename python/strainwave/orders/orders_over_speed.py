@@ -32,18 +32,22 @@ MIN_TURNS = 2.0  # of a stretch: order 1 and a drift are separated
 MAX_TURNS = 8.0  # of a stretch, that orders close to each other ask for
 MAX_SPEED_CHANGE = 0.004  # of the speed in a stretch of more turns than it needs: a fifth of a peak of 1 % damping
 MAX_STRETCHES = 400  # of all recordings
+MIN_RECORDINGS_OF_ONE = 12  # recordings, from which one at constant speed is one stretch
 MIN_STRETCHES_OF_RECORDING = 4  # of a recording at constant speed, as its noise is found from them
 TREND_POWERS = 3  # of the angle in a stretch: constant, rate, and a change of the rate
 MAX_WAVE_STEP = 0.8 * np.pi  # rad of an order between samples
-MAX_FOLLOWED = 10  # orders, the strongest ones
+WAVE_COLUMNS = 4  # of an order in a stretch: both parts, and their change
+MAX_WHOLE_ORDER = 32
+MAX_FOLLOWED = 8  # orders, the strongest ones
 MIN_ORDER = 0.3  # of the shaft: slower ones are drifts
 MAX_LOOKED_FOR = 64  # order, up to which a spectrum is searched if none are named
 MAX_SEARCHED_STEP = 0.4 * np.pi  # rad of an order between samples, as the spectrum interpolates
 SEGMENT_TURNS = 32.0  # of a segment of the spectrum over the angle: resolves orders to 1/16
 MIN_SEGMENTS = 3
 MIN_SEGMENT_TURNS = 3.0
-MIN_LINE_POWER = 4.0  # over the noise: a median of few lines is no exact floor
-MIN_SEGMENT_SHARE = 0.3  # of the segments, that a line that is no whole order stands out of: mains do in few
+MIN_LINE_POWER = 8.0  # over the noise: a median of few lines is no exact floor
+MIN_PEAK_POWER = 14.0  # over the noise, of the changes of a whole order in three stretches: noise has it once in 10^6
+MIN_SEGMENT_SHARE = 0.05  # of the segments, that a line that is no whole order stands out of: mains do in few
 MAX_LINES = 24
 MAX_FROM_WHOLE = 1.5 / SEGMENT_TURNS  # by which a line of that spectrum lies beside its whole order
 FALSE_ALARM = 1e-4  # probability that noise makes a line of the spectrum
@@ -59,6 +63,7 @@ class Turning:
         angle: of the shaft, counted so that it increases [rad], shape (n,)
         speed: of it [rad/s], shape (n,)
         series: the column, shape (n,)
+        per_input: revolutions of the output per one of the shaft, without sign; 0 if there is no angle of the output
         remarks: what was done to the recording
     """
 
@@ -66,6 +71,7 @@ class Turning:
     angle: Array
     speed: Array
     series: Array
+    per_input: float
     remarks: tuple[str, ...]
 
     @property
@@ -83,6 +89,7 @@ class OrdersOverSpeed:
         speed: mean of each stretch [rad/s], shape (k,)
         amplitude: of X exp(j order angle), shape (q, k)
         sigma: standard deviation of an amplitude, if the noise of its stretch were white, shape (k,)
+        output: mean angle of the output in each stretch, by the angle of the shaft [rad], shape (k,); zeros if it is not known
         stretches: first and one past the last sample of each, and the number of its recording, shape (k, 3)
         recordings: that turn one way
         remarks: what was left out
@@ -92,6 +99,7 @@ class OrdersOverSpeed:
     speed: Array
     amplitude: Complex
     sigma: Array
+    output: Array
     stretches: NDArray[np.int_]
     recordings: tuple[Turning, ...]
     remarks: tuple[str, ...]
@@ -115,25 +123,42 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
     if (used := part.stop - part.start) < 0.95 * len(turned):
         remarks += (f"{number(used * record.step, 3)} s are used, in which {angle} turns one way without a stop",)
     time = record.start + record.step * np.arange(part.start, part.stop)
-    return Turning(time, sense * turned[part], sense * speed[part], record.columns[column][part], remarks)
+    series = record.columns[column][part]
+    per_input = 0.0
+    if column == "output_angle":
+        series = convert(unwrapped(column, convert(series, recording.unit(column), "rad")), "rad", recording.unit(column))
+        turns = convert(series[[0, -1]], recording.unit(column), "rad")
+        per_input = float(abs((turns[1] - turns[0]) / (turned[part][-1] - turned[part][0])))
+    return Turning(time, sense * turned[part], sense * speed[part], series, per_input, remarks)
 
 
-def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float]) -> OrdersOverSpeed:
-    """Return the amplitudes of the orders in stretches of recordings."""
-    chosen, remarks = _separated(orders)
-    chosen, slow = _sampled(chosen, recordings)
+def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:
+    """Return the amplitudes of orders in stretches of recordings, fitted together with those of others beside them."""
+    own, slow = _sampled(orders, recordings)
+    chosen, remarks = _separated([*own, *_sampled(beside, recordings)[0]])
+    wanted = sum(order in own for order in chosen)
+    remarks = remarks if len(orders) > wanted else []
     gap = min((high - low for low, high in pairwise([0.0, *sorted(chosen)])), default=1.0)
     turns = min(max(MIN_TURNS, 1.0 / gap), MAX_TURNS)
     rows: list[tuple[float, Complex, float, tuple[int, int, int]]] = []
     for place, recording in enumerate(recordings):
-        for start, stop in _stretches(recording, turns, len(chosen), MAX_STRETCHES // len(recordings)):
+        for start, stop in _stretches(recording, turns, len(chosen), len(recordings)):
             stretch = _amplitudes(recording, start, stop, chosen)
             if stretch is not None:
-                rows.append((float(recording.speed[start:stop].mean()), *stretch, (start, stop, place)))
-    amplitude = np.array([row[1] for row in rows], complex).reshape(len(rows), len(chosen)).T
+                mean = float(recording.speed[start:stop].mean())
+                rows.append((mean, stretch[0][:wanted], stretch[1], (start, stop, place)))
+    amplitude = np.array([row[1] for row in rows], complex).reshape(len(rows), wanted).T
     stretches = np.array([row[3] for row in rows], int).reshape(-1, 3)
     speed, sigma = (np.array([row[k] for row in rows]) for k in (0, 2))
-    return OrdersOverSpeed(np.array(chosen), speed, amplitude, sigma, stretches, tuple(recordings), (*remarks, *slow))
+    output = np.array([of.per_input * float(of.angle[a:b].mean()) for a, b, of in _named(stretches, recordings)])
+    return OrdersOverSpeed(
+        np.array(chosen[:wanted]), speed, amplitude, sigma, output, stretches, tuple(recordings), (*remarks, *slow)
+    )
+
+
+def _named(stretches: NDArray[np.int_], recordings: Sequence[Turning]) -> Iterator[tuple[int, int, Turning]]:
+    for start, stop, place in stretches.tolist():
+        yield start, stop, recordings[place]
 
 
 def _separated(orders: Sequence[float]) -> tuple[list[float], list[str]]:
@@ -157,22 +182,21 @@ def _sampled(orders: Sequence[float], recordings: Sequence[Turning]) -> tuple[li
     return [order for order in orders if order < top], remarks
 
 
-def _stretches(recording: Turning, turns: float, orders: int, most: int) -> Iterator[tuple[int, int]]:
+def _stretches(recording: Turning, turns: float, orders: int, recordings: int) -> Iterator[tuple[int, int]]:
     """Yield first and one past the last sample of stretches, one after the other."""
     angle, speed = recording.angle, recording.speed
-    turns = max(turns, recording.turns / most)
-    widest = max(recording.turns / MIN_STRETCHES_OF_RECORDING, turns) * tau
-    fewest = 2 * (TREND_POWERS + 4 * orders)
-    start = 0
-    while start < len(angle) - 1:
-        stop = max(int(np.searchsorted(angle, angle[start] + turns * tau)), start + fewest)
-        if stop >= len(angle):
+    turns = max(turns, recording.turns / (MAX_STRETCHES // recordings))
+    fewest = MIN_STRETCHES_OF_RECORDING if recordings < MIN_RECORDINGS_OF_ONE else 1
+    widest = max(recording.turns / fewest, turns) * tau
+    samples = 2 * (TREND_POWERS + WAVE_COLUMNS * orders)
+    start, end = 0, len(angle) - 1
+    while start < end:
+        stop = max(int(np.searchsorted(angle, angle[start] + turns * tau)), start + samples)
+        if stop > end:
             return
-        reach = int(np.searchsorted(angle, angle[start] + widest))
+        reach = min(int(np.searchsorted(angle, angle[start] + widest)), end)
         changed = np.abs(speed[stop:reach] / speed[start] - 1.0) > MAX_SPEED_CHANGE
         stop = stop + int(np.argmax(changed)) if changed.any() else max(stop, reach)
-        if stop > len(angle) - 1:
-            stop = len(angle) - 1
         yield start, stop
         start = stop
 
@@ -203,12 +227,12 @@ def _amplitudes(recording: Turning, start: int, stop: int, orders: Sequence[floa
 
 @dataclass(frozen=True)
 class OrderLine:
-    """A line of the spectrum over the angle.
+    """An order that stands out.
 
     Attributes:
-        order: of the shaft [1]; a whole number if it lies within the resolution of one
-        sigma: its standard deviation
-        power: over the noise beside it
+        order: of the shaft [1]
+        sigma: its standard deviation; 0 of a whole number
+        power: over the noise, of the changes of a whole order over the speed, else of the line
     """
 
     order: float
@@ -216,9 +240,26 @@ class OrderLine:
     power: float
 
 
-def standing_out(recordings: Sequence[Turning]) -> list[OrderLine]:
-    """Return the orders that stand out of the spectra over the angle, the strongest first."""
-    turns = min(SEGMENT_TURNS, min(each.turns for each in recordings) / MIN_SEGMENTS)
+def whole_orders(recordings: Sequence[Turning]) -> list[OrderLine]:
+    """Return the whole orders whose amplitudes change over the speed, those that change most first."""
+    step = float(np.median([np.quantile(np.diff(each.angle), 0.9) for each in recordings]))
+    top = int(min(MAX_WHOLE_ORDER, MAX_WAVE_STEP / step, 0.25 * MAX_TURNS * tau / step / WAVE_COLUMNS))
+    spectrum = orders_over_speed(recordings, [float(order) for order in range(1, top + 1)])
+    lines = []
+    for order, amplitude in zip(spectrum.orders.tolist(), spectrum.amplitude, strict=True):
+        shown = np.isfinite(amplitude)
+        if shown.sum() > 2:
+            left = amplitude[shown] - np.mean(amplitude[shown])
+            over_noise = np.abs(left / np.maximum(spectrum.sigma[shown], 1e-300)) ** 2
+            often = np.sort(over_noise)[-MIN_SEGMENTS:].min()  # an order may show near a resonance alone
+            power = float(np.mean(over_noise)) if often > MIN_PEAK_POWER else 0.0
+            lines.append(OrderLine(order, 0.0, power))
+    return sorted((line for line in lines if line.power > 0.0), key=lambda line: -line.power)
+
+
+def uneven_orders(recordings: Sequence[Turning]) -> list[OrderLine]:
+    """Return the orders that are no whole ones and stand out of the spectra over the angle, the strongest first."""
+    turns = min(SEGMENT_TURNS, min(each.turns for each in recordings) / max(MIN_SEGMENTS / len(recordings), 1.0))
     if turns < MIN_SEGMENT_TURNS:
         return []
     spectra = np.array([spectrum for each in recordings for spectrum in _segments(each, turns)])
@@ -258,7 +299,7 @@ def _lines(order: Array, excess: Array, turns: float, whole: Turning) -> list[Or
     shown = np.isfinite(excess)
     counts = shown.sum(axis=0)
     mean = np.where(shown, excess, 0.0).sum(axis=0) / np.maximum(counts, 1)
-    often = np.where(shown, excess > MIN_LINE_POWER, False).sum(axis=0) / np.maximum(counts, 1)
+    often = np.where(shown, excess > MIN_LINE_POWER, False).sum(axis=0)
     independent = np.maximum(0.5 * counts, 1.0)  # segments overlap by half
     needed = np.maximum(gammainccinv(independent, FALSE_ALARM / len(order)) / independent, MIN_LINE_POWER)
     inner = slice(2, len(order) - 1)
@@ -268,11 +309,9 @@ def _lines(order: Array, excess: Array, turns: float, whole: Turning) -> list[Or
         near = float(order[k])
         if near < MIN_ORDER or any(abs(near - other.order) < 2.5 / turns for other in found):
             continue
-        if round(near) and abs(near - round(near)) <= MAX_FROM_WHOLE * SEGMENT_TURNS / turns:
-            found.append(OrderLine(float(round(near)), 0.0, float(mean[k])))
-        elif often[k] > MIN_SEGMENT_SHARE:
+        if often[k] >= max(MIN_SEGMENTS, MIN_SEGMENT_SHARE * counts[k]):
             found.append(OrderLine(*_refined(whole, near, turns), float(mean[k])))
-    return found[:MAX_LINES]
+    return [line for line in found if abs(line.order - round(line.order)) > MAX_FROM_WHOLE * SEGMENT_TURNS / turns][:MAX_LINES]
 
 
 def _refined(recording: Turning, near: float, turns: float) -> tuple[float, float]:

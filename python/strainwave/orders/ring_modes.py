@@ -23,9 +23,11 @@ from strainwave.orders.orders_over_speed import (
     OrdersOverSpeed,
     Turning,
     orders_over_speed,
-    standing_out,
     turning_one_way,
+    uneven_orders,
+    whole_orders,
 )
+from strainwave.orders.turning import reach_of, smooth_speed
 from strainwave.presentation import Pictured, Row
 from strainwave.typeset import number, uncertain
 
@@ -38,6 +40,8 @@ Complex = NDArray[np.complex128]
 STANDING_COLUMNS = ("vibration", "acceleration")  # of sensors that do not go round with the lobes
 MIN_STRETCHES = 12  # amplitudes of an order, for a peak of three unknowns and what passes by
 MIN_SPEED_RATIO = 1.3  # of the fastest to the slowest speed, from which orders pass a range of frequencies
+MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
+MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must pass
 MIN_STRETCHES_IN_PEAK = 3  # within that reach
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
@@ -45,8 +49,10 @@ MAX_ODDS = 10.0  # by which one number of waves must be more probable than each 
 MAX_CANDIDATE_WAVES = 6
 MAX_DAMPING_SIGMA = 0.5  # of the damping, over which it is not stated
 SAME_MODE_SIGMA = 3.0  # standard deviations between the frequencies of both lines of a mode
-MIN_DAMPING_SIGMA = 0.01  # of the damping: forces are not quite constant along a peak (assumed)
+MIN_DAMPING_SIGMA = 0.03  # of the damping: forces are not quite constant along a peak (assumed)
+MIN_WIDTH_SIGMA = 0.05  # of the half width of a peak, in its frequency, for the same reason (assumed)
 MIN_FREQUENCY_SIGMA = 2e-4  # of the frequency: clocks and speeds are not better
+MAX_BESIDE = 3  # orders that are no whole ones, fitted beside those that are followed
 MAX_UNEVEN = 8  # orders that are no whole ones, for which a bearing is looked for
 FIGURE_HEIGHT = 1.7  # inches of an order
 MAX_DRAWN_ORDERS = 6
@@ -174,9 +180,9 @@ def ring_modes(
     that changes an order along the speed otherwise is no part of the model.
 
     >>> import strainwave as sw
-    >>> time = np.arange(0.0, 10.0, 1e-3)
-    >>> speed = 20.0 + 15.0 * time
-    >>> theta = 20.0 * time + 7.5 * time**2
+    >>> time = np.arange(0.0, 60.0, 2e-3)
+    >>> speed = 20.0 + 2.5 * time
+    >>> theta = 20.0 * time + 1.25 * time**2
     >>> def answer(passes, natural=500.0, damping=0.03):
     ...     ratio = passes * speed / natural
     ...     return 1.0 / (1.0 - ratio**2 + 2j * damping * ratio)
@@ -194,12 +200,14 @@ def ring_modes(
     for recording in given:
         check_recording("recordings", recording)
     turning = [turning_one_way(each, arguments.text("column", column), arguments.text("angle", angle)) for each in given]
-    lines = [] if orders is not None else standing_out(turning)
-    followed = [line.order for line in lines][:MAX_FOLLOWED] if orders is None else arguments.positive_series("orders", orders)
-    spectrum = orders_over_speed(turning, [float(order) for order in followed])
+    uneven = uneven_orders(turning)[:MAX_UNEVEN] if orders is None else []
+    if orders is None:
+        followed = [line.order for line in whole_orders(turning)][:MAX_FOLLOWED]
+    else:
+        followed = arguments.positive_series("orders", orders).tolist()
+    spectrum = orders_over_speed(turning, followed, [line.order for line in uneven][:MAX_BESIDE])
     remarks = list(dict.fromkeys([*(remark for each in turning for remark in each.remarks), *spectrum.remarks]))
-    uneven = [(line.order, line.sigma) for line in lines if line.sigma > 0.0][:MAX_UNEVEN]
-    bearing = bearing_candidates(*np.array(uneven).T) if uneven else None
+    bearing = bearing_candidates([line.order for line in uneven], [line.sigma for line in uneven]) if uneven else None
     problem = ModeProblem(spectrum, column in STANDING_COLUMNS)
     if why := _too_little(spectrum):
         modes, fit = (), problem.fit((), problem.scale, np.ones(len(spectrum.orders))) if len(spectrum.orders) else None
@@ -221,6 +229,19 @@ def ring_modes(
         bearing,
         tuple(remarks),
     )
+
+
+def passes_frequencies(recordings: Sequence[Recording], angle: str) -> bool:
+    """Return True if the shaft turns one way, far enough and at speeds that differ enough, for orders to pass a mode."""
+    turns, speeds = 0.0, list[float]()
+    for recording in recordings:
+        turned, time = np.unwrap(recording.values(angle, "rad")), recording.time
+        speed = smooth_speed(turned, reach_of(len(turned))) / max(float(np.median(np.diff(time))), 1e-300)
+        if np.mean(np.sign(speed) == np.sign(speed[len(speed) // 2])) < MIN_ONE_WAY_SHARE:
+            return False
+        turns += float(np.ptp(turned)) / tau
+        speeds += [float(each) for each in np.quantile(np.abs(speed), [0.05, 0.95])]
+    return turns > MIN_TURNS_IN_ALL and max(speeds) > MIN_SPEED_RATIO * max(min(speeds), 1e-300)
 
 
 def _too_little(spectrum: OrdersOverSpeed) -> str:
@@ -297,7 +318,7 @@ def _mode(problem: ModeProblem, passing: _Passing) -> RingMode:
     damping, spread = line.damping, float(np.hypot(sigma[1], MIN_DAMPING_SIGMA))
     if not spread < MAX_DAMPING_SIGMA:
         damping = nan
-    frequency_sigma = float(np.hypot(sigma[0], MIN_FREQUENCY_SIGMA))
+    frequency_sigma = float(np.sqrt(sigma[0] ** 2 + MIN_FREQUENCY_SIGMA**2 + (MIN_WIDTH_SIGMA * line.damping) ** 2))
     slope, slope_sigma = abs(line.slope), float(sigma[2])
     whole = round(slope)
     from_whole = abs(slope - whole) + 2.0 * slope_sigma
@@ -309,13 +330,14 @@ def _mode(problem: ModeProblem, passing: _Passing) -> RingMode:
             None, line.frequency, line.frequency * frequency_sigma, slope=nan, slope_sigma=nan,
             candidates=(candidate,), separated_by=why, **common,
         )  # fmt: skip
-    if from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals:
+    several = len(passing.orders) > 1  # one order leaves the slope to the shape of its peaks alone
+    if several and from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals:
         candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
         return RingMode(
             whole, line.frequency, line.frequency * frequency_sigma, slope=slope, slope_sigma=slope_sigma,
             candidates=(candidate,), **common,
         )  # fmt: skip
-    candidates = _candidates(problem, passing)
+    candidates = _candidates(problem, passing, several)
     if len(candidates) < 2:
         candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
         why = (
@@ -340,10 +362,10 @@ def _candidate(problem: ModeProblem, waves: int, frequency: float, sigma: float)
     return ModeCandidate(waves, frequency, sigma, tuple(speeds))
 
 
-def _candidates(problem: ModeProblem, passing: _Passing) -> tuple[ModeCandidate, ...]:
+def _candidates(problem: ModeProblem, passing: _Passing, several: bool) -> tuple[ModeCandidate, ...]:
     """Return the numbers of waves that are left, each with the frequency at which the peak lies where it was measured."""
     line, (order, peak) = passing.line, passing.peaks[0]
-    spread, sigma = float(passing.sigma[2]), max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
+    spread, sigma = float(passing.sigma[2]) if several else np.inf, max(float(passing.sigma[0]), MIN_FREQUENCY_SIGMA)
     near = [rival.slope for rival in passing.rivals]
     left: dict[int, tuple[float, float]] = {}
     for slope in sorted(range(-MAX_CANDIDATE_WAVES, MAX_CANDIDATE_WAVES + 1), key=abs):
@@ -404,26 +426,26 @@ def modes_figure(modes: RingModes) -> Figure:
     """Return the figure of a `RingModes`, as its `plot` describes it."""
     if not modes.orders:
         raise ValueError("no order was followed")
-    size = np.nanmax(np.abs(modes.amplitude), axis=1)
-    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
-    place = np.argsort(modes.speed, kind="stable")
-    with marks.new_figure(0.8 + FIGURE_HEIGHT * len(drawn), "Orders over the speed") as figure:
-        panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-        rpm = modes.speed[place] * 30.0 / np.pi
-        for axes, k in zip(panels, drawn, strict=True):
-            axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
-            marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="modes")
-            label = "critical speed"
-            for mode in modes.modes:
-                for order, speed in mode.candidates[0].critical_speeds:
-                    if order == modes.orders[k] and rpm[0] < speed * 30.0 / np.pi < rpm[-1]:
-                        axes.axvline(speed * 30.0 / np.pi, color=LIGHT["muted"], linestyle="--", linewidth=0.8, label=label)
-                        label = ""
-            axes.set_ylim(bottom=0.0)
-            marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
-        marks.label_abscissa(panels[-1], "speed [1/min]", "1")
-        marks.legend(figure, panels[0])
+    with marks.new_figure(0.8 + FIGURE_HEIGHT * min(len(modes.orders), MAX_DRAWN_ORDERS), "Orders over the speed") as figure:
+        draw_modes(figure, modes)
     return figure
 
 
-__all__ = ["ModeCandidate", "RingMode", "RingModes", "Turning", "ring_modes", "words_of"]
+def draw_modes(figure: Figure, modes: RingModes) -> None:
+    """Draw the amplitude of each order over the speed, with the model and the critical speeds."""
+    size = np.nanmax(np.abs(modes.amplitude), axis=1)
+    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
+    place = np.argsort(modes.speed, kind="stable")
+    rpm = modes.speed[place] * 30.0 / np.pi
+    panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, k in zip(panels, drawn, strict=True):
+        axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
+        marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="model")
+        critical = [speed * 30.0 / np.pi for mode in modes.modes for order, speed in mode.candidates[0].critical_speeds if order == modes.orders[k]]
+        for speed in critical:
+            if rpm[0] < speed < rpm[-1]:
+                axes.axvline(speed, color=LIGHT["muted"], linestyle="--", linewidth=0.8)
+        axes.set_ylim(bottom=0.0)
+        marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
+    marks.label_abscissa(panels[-1], "speed [1/min]", "1")
+    marks.legend(figure, panels[0])

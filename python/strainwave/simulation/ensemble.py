@@ -171,8 +171,9 @@ class Ensemble(ComparedByFields, Pictured):
         >>> import tempfile
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+        >>> step, varied = sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.02]}
         >>> with tempfile.TemporaryDirectory() as folder:
-        ...     _ = sw.simulate_to(f"{folder}/runs", drive, sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.02]})
+        ...     _ = sw.simulation.simulate_to(f"{folder}/runs", drive, step, varied)
         ...     runs = sw.Ensemble.read(f"{folder}/runs")
         >>> runs["torque"].shape
         (2, 501)
@@ -464,8 +465,9 @@ def simulate_to(
     >>> import tempfile
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> step, varied = sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = sw.simulate_to(folder, drive, sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}, sample=1e-2)
+    ...     _ = sw.simulation.simulate_to(folder, drive, step, varied, sample=1e-2)
     ...     sw.Ensemble.read(folder)["torque"].shape
     (2, 11)
     """
