@@ -39,7 +39,7 @@ HEAT = "another Thermal: the heat of a drive, by any law"
 MODEL = "the gear and the load that a model of the drive has by default"
 GEAR_AND_LOAD = "whose gear and load are parameters of its type"
 NOTHING = "what a compensation has where nothing else is said"
-COMPOSED = ("tuning/", "workbench/")  # drives are put together from models there, whatever else they are
+COMPOSED = ("tuning/", "workbench/", "orders/mesh/")  # drives are put together from models there, whatever else they are
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
 DIVIDED = "whose Coulomb and viscous friction a set divides where a file determines their sum"
 ALONE = "that of a gear whose log determines no load or motor"
@@ -90,12 +90,16 @@ ELSEWHERE = {
     "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
-        "identification/experiments/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
+        "analysis/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
         "parameter_drive.hpp": BOUND_TO_ANY,
         "general/structure.cpp": OF_EACH_RING,
         "diagnose/actuator_ramp.py": SERIES,
     },
     "Rigid": {"structure/staged.hpp": DEFAULT},
+    "Modes": {
+        "files/mesh_table.py": "the table of modes contains its numbers",
+        "analysis/torsion_loop.py": "whose compliance a loop contains",
+    },
     "Lumped": {
         "general/structure.cpp": OF_EACH_RING,
         "analysis/output_torque.py": SHAFTS_ALONE,

@@ -203,7 +203,8 @@ def controls(scale: float) -> list[Any]:
     return [*laws, *(sw.control.Sampled(law=law, period=1e-3, delay=2e-4) for law in laws[1:])]
 
 
-BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled"}  # in tests/structure/test_staged.py; here a gear has one spring
+# In tests/structure, tests/ring and tests/variation; here a gear has one spring.
+BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled", "Rigid", "Modes", "BallBearing"}
 PART_OF_FAMILY = {"friction": "friction_input"} | {
     name: name for name in ("kinematic_error", "stiffness", "hysteresis", "softening")
 }
