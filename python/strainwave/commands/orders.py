@@ -14,8 +14,11 @@ from strainwave.commands.output import write_report
 from strainwave.progress import in_turn
 
 if TYPE_CHECKING:
+    from strainwave.files.recording import Recording
     from strainwave.identification.reading.source import MeasurementFile
     from strainwave.orders.measured import OrdersFound
+
+MIN_RECORDINGS = 12  # at constant speeds, whose orders are compared over the speed
 
 
 @with_groups
@@ -32,6 +35,7 @@ def orders(
     The angles of both shafts determine ratio, kinematic error and lost motion. Torque or current and one angle determine the
     lines that repeat with the angle, and from them the ratio. Lines that repeat with time, as mains and resonances, are
     separated if the speed varies; lines of other joints that move, if their angles are in the file.
+    Angles of both shafts in a run-up, or in twelve files or more at constant speeds, determine the modes that orders pass.
 
     Examples:
         strainwave orders robot_log.csv
@@ -42,6 +46,7 @@ def orders(
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.identification.reading.source import measurement_files
     from strainwave.messages import one_line
+    from strainwave.orders.measured import OrdersFound, modes_of
     from strainwave.orders.torque_ripple import MAX_ORDER
     from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
@@ -58,15 +63,19 @@ def orders(
         )
     runs = [run for file in measurement_files(paths).files for run in file.runs]
     with in_turn(None, len(runs)) as turn:
-        found = []
+        found, recordings = [], []
         for run in runs:
             turn(run.path.name)
             try:
-                found.append(_of_file(run, given, ratio, rate, highest))
+                of_file, recording = _of_file(run, given, ratio, rate, highest)
+                found.append(of_file)
+                recordings.append(recording)
             except QuestionError as question:
                 raise (question if run.path.name in question.question else question.of(run.path.name)) from None
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
+        if len(recordings) >= MIN_RECORDINGS and (modes := modes_of(recordings)) is not None:
+            found.append(OrdersFound(f"{len(recordings)} recordings together", None, None, modes=modes))
         turn("report")
         files = orders_files(found, Provenance.of_this_command(paths))
     write_report(out, files, orders_summary(found))
@@ -74,7 +83,7 @@ def orders(
 
 def _of_file(
     file: MeasurementFile, given: FileOptions, ratio: float | None, rate: float | None, highest: float | None
-) -> OrdersFound:
+) -> tuple[OrdersFound, Recording]:
     from strainwave.identification.kinds.positioning import positioning_of, positioning_words
     from strainwave.identification.reading.recognise import recognise
     from strainwave.orders.measured import OrdersFound, orders_found
@@ -86,9 +95,8 @@ def _of_file(
     read = read if ratio is None else read.at_ratio(ratio)  # a motor angle in joint units
     if read.kind == "positioning":
         steps = positioning_of(read)
-        return OrdersFound(
-            file.path.name, None, None, (*read.remarks, *positioning_words(steps, read.side, ratio), *steps.remarks)
-        )
+        words = (*read.remarks, *positioning_words(steps, read.side, ratio), *steps.remarks)
+        return OrdersFound(file.path.name, None, None, words), read.recording
     side: Any = mapping.side
     found = orders_found(read.recording, file.path.name, ratio=ratio, side=side, highest=highest, other_angles=read.neighbours)
-    return replace(found, remarks=(*read.remarks, *found.remarks))
+    return replace(found, remarks=(*read.remarks, *found.remarks)), read.recording

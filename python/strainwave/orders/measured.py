@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.messages import listed
+from strainwave.orders.ring_modes import RingModes, passes_frequencies, ring_modes
 from strainwave.orders.run_up import RunUp, is_run_up, run_up
 from strainwave.orders.torque_ripple import Ripple, Side, ripple
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
@@ -38,6 +39,7 @@ class OrdersFound(ComparedByFields, Presented):
         ripple: from torque or current, if it has one and an angle
         remarks: what is not determined, and why
         run_up: orders, resonance and fixed frequencies of a vibration while the speed varies
+        modes: that the orders of the output angle pass, in a run-up or in several recordings
     """
 
     name: str
@@ -45,6 +47,7 @@ class OrdersFound(ComparedByFields, Presented):
     ripple: Ripple | None
     remarks: tuple[str, ...] = ()
     run_up: RunUp | None = None
+    modes: RingModes | None = None
 
 
 def orders_found(
@@ -80,9 +83,10 @@ def orders_found(
         load = next((each for each in ("joint_torque", "current") if each in recording), "")
         both = [each for each in ("time", "input_angle", "output_angle", load) if each in recording]
         error_of_gear = transmission_error(recording.select(both), ratio=ratio, rate=rate, ratio_option="--ratio")
-        if effort is None:
-            return OrdersFound(name, error_of_gear, None)
         in_joint_units = error_of_gear.ratio.in_joint_units
+        modes = None if in_joint_units else modes_of([recording])
+        if effort is None:
+            return OrdersFound(name, error_of_gear, None, modes=modes)
         try:
             own = ripple(
                 recording, effort, angle="input_angle", side="output" if in_joint_units else "input",
@@ -90,8 +94,8 @@ def orders_found(
                 other_angles=other_angles,
             )  # fmt: skip
         except ValueError as error:
-            return OrdersFound(name, error_of_gear, None, (f"ripple in {effort} is not determined: {error}",))
-        return OrdersFound(name, error_of_gear, own)
+            return OrdersFound(name, error_of_gear, None, (f"ripple in {effort} is not determined: {error}",), modes=modes)
+        return OrdersFound(name, error_of_gear, own, modes=modes)
     if effort is None:
         raise ValueError(
             f"orders need two angles, input_angle and output_angle, or one angle and a torque or current; there are "
@@ -106,6 +110,14 @@ def orders_found(
         passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
     lines = replace(lines, remarks=(*remarks, *lines.remarks))
     return OrdersFound(name, None, lines, () if passing is None else passing.remarks, passing)
+
+
+def modes_of(recordings: Sequence[Recording]) -> RingModes | None:
+    """Return the modes that orders of the output angle pass in recordings of two encoders; None if the speeds are too close."""
+    needed = ("time", "input_angle", "output_angle")
+    if not all(name in each for each in recordings for name in needed):
+        return None
+    return ring_modes(recordings, "output_angle") if passes_frequencies(recordings, "input_angle") else None
 
 
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:

@@ -19,6 +19,7 @@ from strainwave.drawing.style import FIGURE_WIDTH, LIGHT
 from strainwave.files.recording import Recording
 from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.measured import OrdersFound
+from strainwave.orders.ring_modes import RingModes, draw_modes, words_of
 from strainwave.orders.run_up import RunUp
 from strainwave.orders.torque_ripple import Ripple, draw_spectrum
 from strainwave.orders.two_encoders import TransmissionError, draw_error
@@ -69,6 +70,8 @@ def _section(found: OrdersFound, place: int) -> dict[str, Any]:
             "map": map_figure(ripple, f"map-{place}"),
         },
         "run_up": [] if found.run_up is None else list(_run_up_words(found.run_up)),
+        "modes": [] if found.modes is None else list(_modes_words(found.modes)),
+        "modes_figure": "" if found.modes is None or not found.modes.orders else modes_figure(found.modes, f"modes-{place}"),
         "remarks": _remarks(found),
     }
 
@@ -169,7 +172,7 @@ def _candidate(ratio: int, share: float, matched: Sequence[tuple[float, float]])
 
 def _remarks(found: OrdersFound) -> list[str]:
     remarks = [*found.remarks]
-    for part in (found.transmission, found.ripple):
+    for part in (found.transmission, found.ripple, found.modes):
         remarks += [] if part is None else [each for each in part.remarks if each not in remarks]
     return remarks
 
@@ -185,6 +188,8 @@ def orders_summary(found: Sequence[OrdersFound]) -> str:
         lines += [] if each.transmission is None else _error_lines(each.transmission)
         lines += [] if each.ripple is None else _ripple_lines(each.ripple)
         lines += [] if each.run_up is None else [f"  run-up: {text}" for text in _run_up_words(each.run_up)]
+        for text in [] if each.modes is None else _modes_words(each.modes):
+            lines += textwrap.wrap(f"  over the speed: {text}", PAGE_WIDTH, subsequent_indent="    ")
         for remark in _remarks(each):
             lines += textwrap.wrap(f"  note: {remark}", PAGE_WIDTH, subsequent_indent="    ")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
@@ -253,6 +258,16 @@ def _run_up_words(passing: RunUp) -> Iterator[str]:
         yield f"fixed frequency {number(place, 5)} Hz: {uncertain_quantity(size, sigma, 'm/s2')}, no order of the shaft"
 
 
+def _modes_words(modes: RingModes) -> Iterator[str]:
+    """Yield the modes that orders pass, and the bearings that explain the others, in words."""
+    for mode in modes.modes:
+        yield f"mode at {words_of(mode)}"
+    if not modes.modes:
+        yield "no mode is passed by an order from below to above"
+    if modes.bearing is not None:
+        yield f"bearing: {modes.bearing._headline()}"
+
+
 def _concluded(ripple: Ripple) -> str:
     """Return the ratio that the lines determine, with its probability; empty without one."""
     share = sum(each.share for each in ripple.candidates if each.ratio in ripple.concluded)
@@ -308,6 +323,7 @@ def _results(found: OrdersFound) -> dict[str, Any]:
         "law": None if law is None else {name: list(getattr(law, name)) for name in ("order", "amplitude", "phase")},
         "ripple": None if ripple is None else {**members_of(ripple), "lines": [line_numbers(each) for each in ripple.lines]},
         "run_up": None if found.run_up is None else members_of(found.run_up),
+        "modes": None if found.modes is None else found.modes.to_dict(),
         "remarks": _remarks(found),
     }
 
@@ -377,6 +393,13 @@ def error_figure(error: TransmissionError, name: str) -> str:
     """Return the figure of the transmission error over the record, its orders and its residual."""
     return figures.inline(
         lambda figure: draw_error(figure, error), (FIGURE_WIDTH, 3.6), name, "Transmission error, kinematic error and residual"
+    )
+
+
+def modes_figure(modes: RingModes, name: str) -> str:
+    """Return the figure of the amplitudes of orders over the speed, with the model."""
+    return figures.inline(
+        lambda figure: draw_modes(figure, modes), (FIGURE_WIDTH, 5.0), name, "Amplitudes of orders over the speed, and modes"
     )
 
 

@@ -36,6 +36,7 @@ from strainwave.identification.fitting.influence import influence
 from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.motion import turns_steadily
 from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed, pair
@@ -83,6 +84,8 @@ class Torsion(Kind):
         if not angles or not torques:
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
+        if (speeds := measured(columns, "speed")) and turns_steadily(angle, speeds[0].si):
+            return False
         if _exceeds_twist(column, mapping):
             loop = [] if measured(columns, "speed") else [Answer("a torsion loop all the same", {"kind": "torsion"})]
             raise QuestionError(
