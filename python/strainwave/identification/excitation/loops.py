@@ -82,7 +82,7 @@ def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: fl
 
     The last one is that after which the forms of widths leave more of each share open than the noise does.
     """
-    information: Array = np.linalg.inv(further.covariance)
+    information = np.asarray(np.linalg.inv(further.covariance), float)
     taken, covariance, left = list[int](), further.covariance, budget
     while np.any(np.sqrt(np.diag(covariance)[wanted]) > further.floors[wanted]):
         affordable = np.flatnonzero(cost <= left)
@@ -94,7 +94,7 @@ def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: fl
             break
         taken, left = [*taken, place], left - float(cost[place])
         information = information + further.information[place]
-        covariance = np.linalg.inv(information)
+        covariance = np.asarray(np.linalg.inv(information), float)
     return taken, covariance
 
 
