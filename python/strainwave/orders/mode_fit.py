@@ -55,7 +55,8 @@ MIN_NOISE_SHARE = 0.02  # of the changes of an order along the speed: forces and
 MOBILITY_SHARE = 0.2  # of the receptance, that a force through a damper, or one that grows with the speed, adds
 MIN_OUTPUT_TURN = 0.5  # rad of the output, from which the orders of both splines differ
 BASE_PRIOR = 30.0  # of what passes by the lines, over the root mean square of an order
-MAX_SEARCH_STEPS = 20  # of a fit: what needs more is no peak
+MAX_EVALUATIONS = 120  # of a fit
+BOUND_COST = 100.0  # standard deviations of the residual, by a value one beyond its bounds
 MAX_PROPOSED = 200  # first values of the search
 MAX_STARTS = 5  # first values that are fitted for a further line
 MAX_EVIDENCE_LAG = 40.0  # of the natural logarithm of the odds, by which the search may be worse than its best to be fitted
@@ -76,7 +77,7 @@ MIN_SLOPE_OF_BOTH = 0.3  # from which both lines of a mode are separate
 MIN_SIGNIFICANCE = 4.0  # standard deviations of the coefficient of an order that a line acts on
 MIN_PASSES = 0.05  # of a force in a revolution, as the ring meets it
 SLOW_SWEEP_SHARE = 0.1  # phase [rad] by which a force may turn within a step of time by its change of speed
-MIN_CHANGE = 1e-3  # of a receptance over its static one, along the speeds: less is that of what passes by
+MIN_CHANGE = 0.02  # of a receptance over its static one, along the speeds: less is that of what passes by
 MAX_KEPT_ANSWERS = 64  # of lines: a derivative changes one of several
 MAX_STEPS = 6000  # of time, in a run-up
 CONSTANT_SPEED_SPREAD = 0.01  # of the speed in a recording, up to which a resonance answers at once
@@ -367,12 +368,10 @@ class ModeProblem:
         _, size = np.linalg.slogdet(np.eye(normal.shape[1]) + normal)
         occam = 0.0
         if len(spread):
-            ranges = [
-                log(self.speeds[1] / self.speeds[0]),
-                log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0]),
-                SLOPE_PRIOR * np.sqrt(tau),
-            ]
-            share = np.sqrt(tau * np.maximum(np.diag(spread), 1e-300)) / np.tile(ranges, len(lines))
+            usual = [log(self.speeds[1] / self.speeds[0]), log(DAMPING_BOUNDS[1] / DAMPING_BOUNDS[0])]
+            slopes = [WHOLE_SLOPE_SIGMA if line.whole else SLOPE_PRIOR for line in lines]
+            ranges = [[*usual, *([] if self.stands else [slope * np.sqrt(tau)])] for slope in slopes]
+            share = np.sqrt(tau * np.maximum(np.diag(spread), 1e-300)) / np.concatenate(ranges)
             occam = float(np.sum(np.log(np.minimum(share, 1.0))))
         return float(np.sum(fitted - size)) + occam
 
@@ -391,42 +390,44 @@ class ModeProblem:
         if self.stands:
             ends = [[*each[:2]] for each in ends]
         bounds = np.tile(ends, len(searched))
-        start = np.clip(self._values(searched, reference), bounds[0] + 1e-9, bounds[1] - 1e-9)
-        scale = np.tile([0.01, 0.3, 0.3][: len(ends[0])], len(searched))
+        start = np.clip(self._values(searched, reference), *bounds)
 
         def moved(values: Array) -> tuple[Line, ...]:
-            own = dict(zip(free, self._lines(values, searched, reference), strict=True))
+            own = dict(zip(free, self._lines(np.clip(values, *bounds), searched, reference), strict=True))
             return tuple(own.get(k, line) for k, line in enumerate(lines))
 
         def left(values: Array) -> Array:
-            return self._whitened(moved(values), noise, correlated)
+            beyond = BOUND_COST * (values - np.clip(values, *bounds))
+            return np.append(self._whitened(moved(values), noise, correlated), beyond)
 
         if not searched:
             return lines
-        best = least_squares(left, start, x_scale=scale, bounds=bounds, max_nfev=MAX_SEARCH_STEPS, xtol=1e-5, ftol=1e-5)
+        best = least_squares(left, start, method="lm", max_nfev=MAX_EVALUATIONS, xtol=1e-5, ftol=1e-5)
         return moved(best.x)
 
-    def _reference(self, line: Line) -> float:
-        """Return the order whose peak stands for the frequency of a mode: of those that it acts on, one with a peak well inside."""
-        own = line.acts[:, 0]
-        orders = self.spectrum.orders[own] if own.any() else self.spectrum.orders
-        peaks = line.frequency / np.maximum(np.abs(orders - line.slope), MIN_PASSES)
+    def _reference(self, line: Line) -> tuple[float, float]:
+        """Return order and sign of the slope of the peak that stands for the frequency of a mode: one that it has inside."""
+        orders = self.spectrum.orders
+        live = line.acts if line.acts.any() else np.ones((len(orders), 2), bool)
+        gaps = np.maximum(np.abs(orders[:, None] - line.slope * np.array([1.0, -1.0])), MIN_PASSES)
         low, high = self.speeds
-        return float(orders[int(np.argmin(np.abs(np.log(peaks / (0.3 * low + 0.7 * high)))))])
+        lag = np.where(live, np.abs(np.log(line.frequency / gaps / (0.3 * low + 0.7 * high))), np.inf)
+        order, part = np.unravel_index(int(np.argmin(lag)), lag.shape)
+        return float(orders[order]), 1.0 - 2.0 * float(part)
 
-    def _values(self, lines: Sequence[Line], reference: Sequence[float]) -> Array:
+    def _values(self, lines: Sequence[Line], reference: Sequence[tuple[float, float]]) -> Array:
         """Return what is searched of lines: the logarithm of the speed of a peak, of the damping, and the slope."""
         rows = []
-        for line, order in zip(lines, reference, strict=True):
-            row = [log(line.frequency / max(abs(order - line.slope), MIN_PASSES)), log(line.damping)]
+        for line, (order, sign) in zip(lines, reference, strict=True):
+            row = [log(line.frequency / max(abs(order - sign * line.slope), MIN_PASSES)), log(line.damping)]
             rows.append(row if self.stands else [*row, line.slope])
         return np.array(rows).ravel()
 
-    def _lines(self, values: Array, lines: Sequence[Line], reference: Sequence[float]) -> tuple[Line, ...]:
+    def _lines(self, values: Array, lines: Sequence[Line], reference: Sequence[tuple[float, float]]) -> tuple[Line, ...]:
         made = []
-        for line, order, row in zip(lines, reference, values.reshape(len(lines), -1).tolist(), strict=True):
+        for line, (order, sign), row in zip(lines, reference, values.reshape(len(lines), -1).tolist(), strict=True):
             slope = 0.0 if self.stands else row[2]
-            frequency = float(np.exp(row[0])) * max(abs(order - slope), MIN_PASSES)
+            frequency = float(np.exp(row[0])) * max(abs(order - sign * slope), MIN_PASSES)
             made.append(line._replace(frequency=frequency, damping=float(np.exp(row[1])), slope=slope))
         return tuple(made)
 
@@ -437,10 +438,11 @@ class ModeProblem:
         width = 2 if self.stands else 3
         turned = np.zeros((3 * len(lines), width * len(lines)))
         for k, line in enumerate(lines):
-            gap = self._reference(line) - line.slope
+            order, sign = self._reference(line)
+            gap = order - sign * line.slope
             turned[3 * k : 3 * k + width, width * k : width * (k + 1)] = np.eye(width)
             if not self.stands and abs(gap) > MIN_PASSES:
-                turned[3 * k, width * k + 2] = -1.0 / gap
+                turned[3 * k, width * k + 2] = -sign / gap
         return np.asarray(turned @ spread @ turned.T)
 
     def _whitened(self, lines: Sequence[Line], noise: Array, correlated: Array) -> Array:

@@ -135,9 +135,13 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
 def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:
     """Return the amplitudes of orders in stretches of recordings, fitted together with those of others beside them."""
     own, slow = _sampled(orders, recordings)
-    chosen, remarks = _separated([*own, *_sampled(beside, recordings)[0]])
-    wanted = sum(order in own for order in chosen)
-    remarks = remarks if len(orders) > wanted else []
+    others = _sampled(beside, recordings)[0]
+    separate = [order for order in own if all(abs(order - other) > 1.0 / MAX_TURNS for other in others)]
+    chosen, remarks = _separated(separate)
+    wanted = len(chosen)
+    chosen += _separated(others)[0]
+    if near := [number(order, 5) for order in own if order not in separate]:
+        remarks.append(f"orders {listed(near)} are not followed: orders that are no whole ones lie within {1.0 / MAX_TURNS:g} of them")
     gap = min((high - low for low, high in pairwise([0.0, *sorted(chosen)])), default=1.0)
     turns = min(max(MIN_TURNS, 1.0 / gap), MAX_TURNS)
     rows: list[tuple[float, Complex, float, tuple[int, int, int]]] = []

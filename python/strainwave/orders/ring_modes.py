@@ -43,7 +43,9 @@ MIN_SPEED_RATIO = 1.3  # of the fastest to the slowest speed, from which orders 
 MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
 MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 PASSED_WIDTHS = 2.0  # half-power half widths on each side, that an order must pass
-MIN_STRETCHES_IN_PEAK = 3  # within that reach
+MIN_STRETCHES_IN_PEAK = 4  # within that reach, of all orders that pass the mode
+MIN_SIGNIFICANCE_OF_ONE = 12.0  # standard deviations of the coefficient, if one order alone passes a mode
+MAX_SLOPE_SIGMA = 0.3  # of a slope that is no whole one, for a frequency
 MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
 MAX_CANDIDATE_WAVES = 6
@@ -280,19 +282,29 @@ def _stated(
     passings, remarks, beyond = list[_Passing](), list[str](), set[float]()
     for place, line in enumerate(fit.lines):
         met = [(q, _peak(line, q, of)) for of in (0, 1) for q in problem.spectrum.orders[line.acts[:, of]].tolist()]
-        passed = tuple((q, peak) for q, peak in met if _passes(problem.spectrum.speed, peak, line.damping))
-        if passed:
-            sigma = np.sqrt(np.diag(fit.covariance)[3 * place : 3 * place + 3])
-            near = tuple(rival for lag, rival in others[place] if lag < np.log(MAX_ODDS))
-            passings.append(_Passing(line, sigma, passed, near))
-        else:
+        speed = problem.spectrum.speed
+        passed = tuple((q, peak) for q, peak in met if _passes(speed, peak, line.damping))
+        within = sum(_within(speed, peak, line.damping) for _, peak in passed)
+        sure = len({q for q, _ in passed}) > 1 or _largest(problem, fit, place) > MIN_SIGNIFICANCE_OF_ONE
+        if within < MIN_STRETCHES_IN_PEAK or not sure:
             beyond.update(q for q, _ in met)
+            continue
+        sigma = np.sqrt(np.diag(fit.covariance)[3 * place : 3 * place + 3])
+        near = tuple(rival for lag, rival in others[place] if lag < np.log(MAX_ODDS))
+        passings.append(_Passing(line, sigma, passed, near))
     if beyond:
         remarks.append(
             f"order{'s' * (len(beyond) > 1)} {listed([number(q, 5) for q in sorted(beyond)])} may come near a peak that is not passed "
             "from below to above: no mode is stated by it; run further"
         )
-    modes = [_mode(problem, passing) for passing in passings]
+    modes = []
+    for passing in passings:
+        mode = _mode(problem, passing)
+        if mode is None:
+            at = listed([f"{number(q, 5)} at {number(peak * 30.0 / np.pi, 4)} 1/min" for q, peak in passing.peaks])
+            remarks.append(f"order {at} has a peak, whose frequency at rest is not determined")
+        else:
+            modes.append(mode)
     return tuple(sorted(modes, key=lambda mode: mode.candidates[0].natural_frequency)), remarks
 
 
@@ -303,17 +315,25 @@ def _peak(line: Line, order: float, of: int) -> float:
 
 
 def _passes(speed: Array, peak: float, damping: float) -> bool:
-    """Return True if the speeds pass a peak from below to above, with stretches in it."""
+    """Return True if the speeds pass a peak from below to above, with one in it."""
     if not isfinite(peak):
         return False
     reach = PASSED_WIDTHS * damping
-    within = np.abs(speed / peak - 1.0) < max(reach, 0.5 * reach)
-    return bool(
-        speed.min() < peak * (1.0 - reach) and peak * (1.0 + reach) < speed.max() and within.sum() >= MIN_STRETCHES_IN_PEAK
-    )
+    return bool(speed.min() < peak * (1.0 - reach) and peak * (1.0 + reach) < speed.max() and _within(speed, peak, damping))
 
 
-def _mode(problem: ModeProblem, passing: _Passing) -> RingMode:
+def _within(speed: Array, peak: float, damping: float) -> int:
+    return int((np.abs(speed / peak - 1.0) < PASSED_WIDTHS * damping).sum())
+
+
+def _largest(problem: ModeProblem, fit: Fitted, place: int) -> float:
+    """Return the largest coefficient of a mode over its standard deviation."""
+    acts = fit.lines[place].acts
+    return float((np.abs(fit.parts[:, place])[acts] / fit.parts_sigma[:, place][acts]).max(initial=0.0))
+
+
+def _mode(problem: ModeProblem, passing: _Passing) -> RingMode | None:
+    """Return a mode as far as it is determined; None if its frequency is not."""
     line, sigma = passing.line, passing.sigma
     damping, spread = line.damping, float(np.hypot(sigma[1], MIN_DAMPING_SIGMA))
     if not spread < MAX_DAMPING_SIGMA:
@@ -339,6 +359,8 @@ def _mode(problem: ModeProblem, passing: _Passing) -> RingMode:
         )  # fmt: skip
     candidates = _candidates(problem, passing, several)
     if len(candidates) < 2:
+        if not several or passing.rivals or slope_sigma > MAX_SLOPE_SIGMA:
+            return None
         candidate = _candidate(problem, whole, line.frequency, line.frequency * frequency_sigma)
         why = (
             f"its line changes by {uncertain(slope, slope_sigma)} of the speed, no whole number: the lobes hold it in part, or two modes "

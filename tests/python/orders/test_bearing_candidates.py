@@ -1,0 +1,51 @@
+"""Bearings that explain orders of the wave generator, by the kinematics of RandallAntoni2011."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import strainwave as sw
+
+BALLS, BALL, PITCH = 23, 5.0, 44.0
+PASSES = 1.0 - sw.orders.bearing_orders(BALLS, BALL, PITCH).cage  # of a ball past a lobe, per revolution
+
+
+def is_in(found: sw.orders.BearingCandidates) -> bool:
+    return any(each.balls == BALLS and abs(each.diameter_ratio - BALL / PITCH) < 0.01 for each in found.candidates)
+
+
+def test_one_order_leaves_many_bearings() -> None:
+    found = sw.orders.bearing_candidates([BALLS * PASSES - 1.0], [0.01])
+    assert is_in(found)
+    assert found.balls is None
+    assert len({each.balls for each in found.candidates}) > 20
+    assert "count the balls" in found.remarks[0]
+
+
+@pytest.mark.slow("orders")
+def test_accurate_orders_leave_few() -> None:
+    orders = np.array([BALLS * PASSES, 2.0 * BALLS * PASSES + 3.0, 3.0 * BALLS * PASSES - 1.0, 5.0 * PASSES, 13.0 * PASSES])
+    found = sw.orders.bearing_candidates(orders, np.full(5, 2e-4))
+    coarse = sw.orders.bearing_candidates(orders, np.full(5, 2e-3))
+    assert is_in(found)
+    assert is_in(coarse)
+    assert len(found.candidates) < 0.3 * len(coarse.candidates)
+
+
+@pytest.mark.slow("orders")
+def test_an_order_of_another_cause_does_not_hide_the_bearing() -> None:
+    found = sw.orders.bearing_candidates([BALLS * PASSES, 2.0 * BALLS * PASSES, 8.0 * PASSES, 7.7331], np.full(4, 1e-3))
+    assert is_in(found)
+
+
+@pytest.mark.slow("orders")
+def test_the_outer_ring_may_turn() -> None:
+    turning = 1.0 - sw.orders.bearing_orders(BALLS, BALL, PITCH, outer_speed=-0.02).cage
+    found = sw.orders.bearing_candidates([BALLS * turning, 3.0 * turning], [1e-4, 1e-4], outer_speed=-0.02)
+    assert is_in(found)
+
+
+@pytest.mark.parametrize(("orders", "sigma"), [([10.5], [0.1, 0.1]), ([-1.0], [0.1]), ([10.5], [0.0]), ([], [])])
+def test_series_that_do_not_fit_are_refused(orders: list[float], sigma: list[float]) -> None:
+    with pytest.raises(ValueError, match="orders"):
+        sw.orders.bearing_candidates(orders, sigma)
