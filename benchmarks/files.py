@@ -64,7 +64,7 @@ def written(members: int, folder: str) -> Crowd:
     sw.simulate_many(drive, command, few, STEP, sample=DURATION)
     runs_time = (time.process_time() - cpu) * members / 8000
     wall, cpu = time.perf_counter(), time.process_time()
-    sw.simulate_to(folder, drive, command, parameters, STEP, sample=SAMPLE)
+    sw.simulation.simulate_to(folder, drive, command, parameters, STEP, sample=SAMPLE)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     files = sum(path.stat().st_size for path in Path(folder).rglob("*.parquet"))
     memory = most_memory()

@@ -389,17 +389,26 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
 
 
+DRAWN_SPEED = 100.0  # rad/s, at which a random error is drawn
+NOISES = (sw.kinematic_error.Stochastic, sw.kinematic_error.MicroSlip)
+
+
+def error_of(model: Any, angle: Array) -> Array:
+    """Return the kinematic error [rad] without load."""
+    return model.error(angle, speed=DRAWN_SPEED) if isinstance(model, NOISES) else model.error(angle)
+
+
 def under_load(model: Any) -> Array:
-    """Return the kinematic error [rad] over a turn under `LOAD_TORQUE`. Only the random one depends on the torque alone."""
-    if isinstance(model, sw.kinematic_error.Stochastic):
-        return model.error(TURN, torque=LOAD_TORQUE)
+    """Return the kinematic error [rad] over a turn under `LOAD_TORQUE`. Only random ones depend on the torque alone."""
+    if isinstance(model, NOISES):
+        return model.error(TURN, torque=LOAD_TORQUE, speed=DRAWN_SPEED)
     return parts.error_under_load(model, TURN, LOAD_TORQUE)
 
 
 @having("error", "slope")
 def error(models: Shown) -> list[Draw]:
     """Over a turn, without load and under load; errors of very different size in panels of their own."""
-    size = {label: float(np.ptp(model.error(TURN))) for label, model in models}
+    size = {label: float(np.ptp(error_of(model, TURN))) for label, model in models}
     large = [(label, model) for label, model in models if size[label] > 1e-2 * max(size.values())]
     small = [(label, model) for label, model in models if size[label] <= 1e-2 * max(size.values())]
 
@@ -407,8 +416,10 @@ def error(models: Shown) -> list[Draw]:
         def draw(axes: Axes) -> None:
             factor, unit = prefixed(max(size[label] for label, _ in some), "rad")
             for label, model in some:
-                sensitive = getattr(model, "load_sensitivity", 0.0) > 0.0
-                axes.plot(np.degrees(TURN), factor * model.error(TURN), label=label or ("without load" if sensitive else None))
+                sensitive = getattr(model, "load_sensitivity", getattr(model, "load_share", 0.0)) > 0.0
+                axes.plot(
+                    np.degrees(TURN), factor * error_of(model, TURN), label=label or ("without load" if sensitive else None)
+                )
                 if sensitive:
                     axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
             axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
@@ -425,7 +436,7 @@ def spectrum(models: Shown) -> list[Draw]:
     def draw(axes: Axes) -> None:
         turns, points = 512, 128
         angle = 2.0 * np.pi * np.arange(turns * points) / points
-        amplitude = 2.0 * np.abs(np.fft.rfft(models[0][1].error(angle))) / len(angle)
+        amplitude = 2.0 * np.abs(np.fft.rfft(error_of(models[0][1], angle))) / len(angle)
         factor, unit = prefixed(float(amplitude.max()), "rad")
         order = np.arange(len(amplitude)) / turns
         axes.plot(order, factor * amplitude, linewidth=0.8)
@@ -534,7 +545,7 @@ def spring(models: Shown) -> list[Draw]:
     return [torques, slopes]
 
 
-@having("work")
+@having("work", "advance")
 def loop(models: Shown) -> list[Draw]:
     """A loop so wide that all the models have slipped; of one alone also smaller loops in it."""
     reach = max(slipped(model) for _, model in models)
@@ -563,6 +574,26 @@ def slipped(model: Any) -> float:
     return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
 
 
+# ---- Material --------------------------------------------------------------------------------------------------------
+
+
+@having("storage", "loss")
+def moduli(models: Shown) -> list[Draw]:
+    """Over the frequency."""
+    law = models[0][1]
+    if not law.active:
+        return []
+    times = law.relaxation_time
+    frequency = np.geomspace(0.03 / max(times), 30.0 / min(times), 400)
+
+    def draw(axes: Axes) -> None:
+        axes.semilogx(frequency, law.storage(frequency), label="in phase with the twist")
+        axes.semilogx(frequency, law.loss(frequency), label="a quarter ahead")
+        axes.set(xlabel="angular frequency [rad/s]", ylabel="stiffness [N.m/rad]")
+
+    return [draw]
+
+
 PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (
     error,
     spectrum,
@@ -571,5 +602,6 @@ PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (
     presliding,
     spring,
     loop,
+    moduli,
     *parts.PANELS,
 )

@@ -39,6 +39,8 @@ faults: dict[str, tuple[Any, str, tuple[float, ...], int]] = {  # signal, orders
     "winding resistance, +20 %": (fault.PhaseResistance(), VOLTAGE, (), 12),
     "uneven phase, +20 %": (fault.PhaseResistance(rise=0.0, excess=0.1), LINE, (8.0,), 12),
     "open phase": (fault.OpenPhase(resistance=5.0), LINE, (8.0,), 12),
+    "one of two winding sets open": (fault.WindingSetLoss(), VOLTAGE, (), 12),
+    "one of two winding sets shorted": (fault.WindingSetLoss(terminals="shorted"), MEAN, (), 12),
     "magnet loss, 30 %": (fault.MagnetLoss(), MEAN, (), 12),
     "cogging, 5 mN·m": (fault.Cogging(), LINE, (24.0,), 12),
     "inverter dead time, 1 V": (fault.InverterDeadTime(), LINE, (24.0,), 12),
@@ -62,9 +64,9 @@ def measured(drive: sw.Drive, signal: str, orders: tuple[float, ...], turns: int
     return [abs(run["current"].mean() if signal == MEAN else run["voltage"].mean() / run["current"].mean())]
 
 
-figure = Figure(figsize=(11.0, 15.0), layout="constrained")
+figure = Figure(figsize=(14.0, 12.5), layout="constrained")
 found: dict[str, np.ndarray] = {}  # signal by severity and order
-for axes, (name, (worst, signal, orders, turns)) in zip(figure.subplots(6, 3).flat, faults.items(), strict=True):
+for axes, (name, (worst, signal, orders, turns)) in zip(figure.subplots(5, 4).flat, faults.items(), strict=True):
     faulty = [sw.dataset.with_faults(joint, [worst.replace(severity=severity)]) for severity in severities[1:]]
     found[name] = np.array([measured(drive, signal, orders, turns) for drive in (joint, *faulty)])
     floor = hidden.get(signal, highest / np.sqrt(max(turns, 1)))
@@ -73,7 +75,7 @@ for axes, (name, (worst, signal, orders, turns)) in zip(figure.subplots(6, 3).fl
         axes.axhline(values[0], color=f"C{number}", ls="--", lw=1.0)
         axes.plot(severities, values, "o-", color=f"C{number}", label=f"order {order:.4g}" if order else signal)
         seen = np.interp(floor, np.maximum.accumulate(np.abs(values - values[0])), severities, right=np.inf)
-        print(f"{name:30} {order or signal!s:23} {values[0]:7.3g} to {values[-1]:7.3g}, seen from severity {seen:.2f}")
+        print(f"{name:32} {order or signal!s:23} {values[0]:7.3g} to {values[-1]:7.3g}, seen from severity {seen:.2f}")
     axes.set(title=name, xlabel="severity", ylabel=signal, xlim=(0.0, 1.0), ylim=(0.0, None))
     axes.grid(alpha=0.3)
     axes.legend(fontsize="small")

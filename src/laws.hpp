@@ -1,6 +1,7 @@
 #pragma once
 #include "general/friction.hpp"
 #include "general/hysteresis.hpp"
+#include "general/material.hpp"
 #include "parameter_drive.hpp"
 #include "verbs.hpp"
 
@@ -165,6 +166,12 @@ struct VariationVerbs {
     template <class M>
     static void add(const Bound<M>& c, int law) {
         variation_verbs({c.type, c.description, law});
+    }
+};
+struct MaterialVerbs {
+    template <class M>
+    static void add(const Bound<M>& c, int law) {
+        material_verbs({c.type, c.description, law, state_of<M, general::Material<double>::State>(c.type)});
     }
 };
 struct FeedforwardVerbs {

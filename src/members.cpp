@@ -134,7 +134,8 @@ const char* signature(const std::string& head, const std::string& result, bool m
     return kept(text + ") -> " + result);
 }
 
-/// Description of each member: name, unit, doc, limits (None: no limit) and whether the lower one is open, its kind, and what it
+/// Description of each member: name, unit, doc, limits (None: no limit) and whether the lower one is open, its kind, whether its
+/// numbers are whole, and what it
 /// may be chosen from; whether it is required, whether a file may leave it out, the member it follows if it is not given, and its
 /// value by default: an order of magnitude where that is not used.
 nb::tuple schema(const Description& description) {
@@ -148,6 +149,7 @@ nb::tuple schema(const Description& description) {
         entry["min"] = field.min <= -unbounded ? nb::none() : nb::object(nb::float_(field.min == smallest ? 0.0 : field.min));
         entry["max"] = field.max >= unbounded ? nb::none() : nb::object(nb::float_(field.max));
         entry["kind"] = member.kind();
+        entry["whole"] = member.is_whole();
         entry["open"] = field.min == smallest;
         entry["options"] = member.options();
         entry["required"] = field.required;

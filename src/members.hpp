@@ -52,12 +52,16 @@ struct Reader {
             refuse_type(field, names, value);
         } else {
             const double x = number(value, field, field.name);
-            if (is_whole<T>(field) && x != std::floor(x)) refuse_type(field, "a whole number", value);
+            check_whole<T>(x, field, value);
             return T(x);
         }
     }
 
 private:
+    template <class T>
+    void check_whole(double x, const Field& field, nb::handle value) const {
+        if (is_whole<T>(field) && x != std::floor(x)) refuse_type(field, "a whole number", value);
+    }
     /// Takes a text with a unit, as "75 mN.m/A", for a number in the unit of the field, if that has one.
     bool text_to_number(nb::handle value, const Field& field, const std::string& name, double& x) const;
 
@@ -68,6 +72,7 @@ private:
         const bool text = nb::isinstance<nb::str>(value);
         if (double alone = 0.0; is_sequence<T> && ((text && has_unit(field)) || to_number(value, alone))) {
             list[0] = number(value, field, field.name);
+            check_whole<double>(list[0], field, value);
             if constexpr (is_sequence<T>) list.count = 1;
             return list;
         }
@@ -79,6 +84,7 @@ private:
                 throw nb::value_error(
                     (owner + "." + field.name + " holds at most " + std::to_string(capacity) + " elements").c_str());
             list[count] = number(item, field, field.name + ("[" + std::to_string(count) + "]"));
+            check_whole<double>(list[count], field, item);
             ++count;
         }
         if constexpr (is_sequence<T>) list.count = count;
@@ -251,7 +257,8 @@ struct Member {
     std::string python_type(bool argument) const;
     /// Choices of it: models by their names in files, or the names of an enumeration.
     nb::object options() const;
-    const char* kind() const { return type->numeric && (type->whole || field.whole) ? "count" : type->kind; }
+    bool is_whole() const { return type->whole || field.whole; }
+    const char* kind() const { return same(type->kind, "number") && is_whole() ? "count" : type->kind; }
 };
 
 /// A struct as Python binds it. Functions of a model get it as a pointer.

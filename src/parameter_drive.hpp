@@ -47,18 +47,21 @@ SW_WITHIN(stiffness::TwoSided, stiffness::Plain)
 SW_WITHIN(stiffness::Backlash, stiffness::Sided)
 SW_WITHIN(kinematic_error::TemperatureDependent, kinematic_error::Pure)
 SW_WITHIN(kinematic_error::Scaled, kinematic_error::Unloaded)
-SW_WITHIN(structure::Staged, variation::Models)
 SW_WITHIN(hysteresis::Preisach, hysteresis::Densities)
 SW_WITHIN(compensation::BristleObserver, friction::Models)
 #undef SW_WITHIN
+template <class S, class Ring, class Variation>
+struct AtRunTime<S, structure::Staged<S, Ring, Variation>> {
+    using type = structure::Staged<S, AnyOf<S, ring::Models>, AnyOf<S, variation::Models>>;
+};
 
 }  // namespace detail
 
 template <class S>
-using AnyGear =
-    Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
-         AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>, AnyOf<S, friction::Models>,
-         AnyOf<S, friction::Models>, AnyOf<S, softening::Models>, AnyOf<S, structure::Models>, AnyOf<S, variation::Models>>;
+using AnyGear = Gear<S, AnyOf<S, kinematics::Models>, AnyOf<S, kinematic_error::Models>, AnyOf<S, kinematic_error::Noises>,
+                     AnyOf<S, stiffness::Models>, AnyOf<S, hysteresis::Models>, AnyOf<S, friction::Models>,
+                     AnyOf<S, friction::Models>, AnyOf<S, friction::Models>, AnyOf<S, softening::Models>,
+                     AnyOf<S, structure::Models>, AnyOf<S, variation::Models>, AnyOf<S, material::Models>>;
 
 namespace detail {
 

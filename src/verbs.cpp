@@ -8,6 +8,7 @@
 #include "general/friction.hpp"
 #include "general/hysteresis.hpp"
 #include "general/kinematic_error.hpp"
+#include "general/material.hpp"
 #include "general/spring_factors.hpp"
 #include "general/stiffness.hpp"
 
@@ -312,6 +313,75 @@ void hysteresis_verbs(const BoundLaw& of) {
                        return m.stored(m.advance(x, increment));
                    });
                });
+}
+
+namespace {
+
+using Material = general::Material<double>;
+
+/// Values of value(law, state, increment, dt) at each instant of a twist over time, the state brought up to date after each.
+template <class F>
+Values over_time(const BoundLaw& of, const void* model, const Call& call, F&& value) {
+    const auto time = steps_of(call["time"], "time", "s"), twist = steps_of(call["twist"], "twist", "rad");
+    if (time.size() != twist.size()) throw nb::value_error("time and twist must have the same length");
+    const auto law = single_law<Material>(of, model);
+    auto x = state_in<Material::State>(of, call);
+    auto [out, y] = like(time);
+    for (std::size_t i = 0; i < time.size(); ++i) {
+        let_interrupt(i);
+        const double dt = i > 0 ? time.data()[i] - time.data()[i - 1] : 0.0;
+        if (i > 0 && !(dt > 0.0))
+            throw nb::value_error(
+                ("time[" + std::to_string(i) + "] = " + with_unit(time.data()[i], "s") + " must lie after the time before it")
+                    .c_str());
+        y[i] = value(law.part, x, i > 0 ? twist.data()[i] - twist.data()[i - 1] : 0.0, dt);
+    }
+    return out;
+}
+
+}  // namespace
+
+void material_verbs(const BoundLaw& of) {
+    using State = Material::State;
+    std::vector<Accepted> course{{"time", SW_NUMBERS}, {"twist", SW_NUMBERS}};
+    if (of.state) course.push_back({"state", "State", "..."});
+    define_verb(of.type, of.description, "trace", course, SW_ARRAY,
+                "Return the torque [N.m], shape (n,), over `time` [s] and `twist` [rad], both of shape (n,).\n\n"
+                "The history starts with `state` at the first instant; without it there is none. Exact for a rate that is constant "
+                "between samples, whatever the step.",
+                [of](const void* model, const Call& call) -> nb::object {
+                    return nb::cast(over_time(of, model, call, [](const Material& m, State& x, double increment, double dt) {
+                        x = m.advance(x, increment, dt);
+                        return m.torque(x);
+                    }));
+                });
+    define_verb(
+        of.type, of.description, "work", course, SW_ARRAY,
+        "Return the work [J] done on the material so far, shape (n,), over `time` [s] and `twist` [rad]; exact, as `trace` is.",
+        [of](const void* model, const Call& call) -> nb::object {
+            double sum = 0.0;
+            return nb::cast(over_time(of, model, call, [&](const Material& m, State& x, double increment, double dt) {
+                sum += m.work(x, increment, dt);
+                x = m.advance(x, increment, dt);
+                return sum;
+            }));
+        });
+    define_verb(of.type, of.description, "stored", course, SW_ARRAY,
+                "Return the elastic energy [J], shape (n,), over `time` [s] and `twist` [rad]; work less stored energy is lost.",
+                [of](const void* model, const Call& call) -> nb::object {
+                    return nb::cast(over_time(of, model, call, [](const Material& m, State& x, double increment, double dt) {
+                        x = m.advance(x, increment, dt);
+                        return m.stored(x);
+                    }));
+                });
+    function<Material>(of, "storage", "frequency",
+                       "Return the stiffness [N.m/rad] in phase with a sine of the twist, of an angular `frequency` [rad/s].",
+                       [](const Material& law, double x) { return law.storage(x); });
+    function<Material>(
+        of, "loss", "frequency",
+        "Return the stiffness [N.m/rad] a quarter of a period ahead of a sine of the twist, of an angular `frequency` "
+        "[rad/s]: a cycle of amplitude a loses pi a^2 times it.",
+        [](const Material& law, double x) { return law.loss(x); });
 }
 
 namespace {

@@ -63,6 +63,7 @@ void friction_verbs(const BoundLaw& law);
 void error_verbs(const BoundLaw& law);
 void noise_verbs(const BoundLaw& law);
 void variation_verbs(const BoundLaw& law);
+void material_verbs(const BoundLaw& law);
 void feedforward_verbs(const BoundLaw& law);
 
 }  // namespace strainwave::host

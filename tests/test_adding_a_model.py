@@ -25,6 +25,7 @@ SOURCES = [
 
 # Where else a model is named, and why it must be.
 BOUND_TO_ANY = "holds another law, which is any law where it is chosen at run time"
+OF_EACH_RING = "whose state depends on the vibration of the ring, so that each is a law of its own"
 DEFAULT = "what a drive has where nothing else is said"
 STEADY_RUNNING = "steady running leaves the kinematic error out"
 REACHED = "a log reaches some of the segments that a gear has, the first of them as one line"
@@ -38,13 +39,13 @@ HEAT = "another Thermal: the heat of a drive, by any law"
 MODEL = "the gear and the load that a model of the drive has by default"
 GEAR_AND_LOAD = "whose gear and load are parameters of its type"
 NOTHING = "what a compensation has where nothing else is said"
-COMPOSED = ("tuning/", "workbench/")  # drives are put together from models there, whatever else they are
+COMPOSED = ("tuning/", "workbench/", "orders/mesh/")  # drives are put together from models there, whatever else they are
 TRIED = "identification/candidates/"  # where a fit of each model starts that is tried on a measurement, is said there
 DIVIDED = "whose Coulomb and viscous friction a set divides where a file determines their sum"
 ALONE = "that of a gear whose log determines no load or motor"
 WRITTEN = "export/"  # another program has a place for some models only
 LINEAR = "what has no linear model, and what takes its place"
-SHAFTS_ALONE = "angles of both shafts show neither bodies within the gear nor a stiffness that varies"
+SHAFTS_ALONE = "angles of both shafts show neither bodies within the gear nor a torque that depends on more than the twist"
 ELSEWHERE = {
     "ModelFeedforward": {
         "parameter_drive.hpp": BOUND_TO_ANY,
@@ -89,11 +90,18 @@ ELSEWHERE = {
     "WaveGeneratorBearing": {"commands/diagnose.py": "whose geometry an option has, for the orders of its elements"},
     "Misalignment": {"diagnose/actuator_ramp.py": "the law that its study is about"},
     "Staged": {
-        "identification/experiments/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
+        "analysis/torsion_loop.py": "whose springs a loop has in series with that of the flexspline",
         "parameter_drive.hpp": BOUND_TO_ANY,
+        "general/structure.cpp": OF_EACH_RING,
         "diagnose/actuator_ramp.py": SERIES,
     },
+    "Rigid": {"structure/staged.hpp": DEFAULT},
+    "Modes": {
+        "files/mesh_table.py": "the table of modes contains its numbers",
+        "analysis/torsion_loop.py": "whose compliance a loop contains",
+    },
     "Lumped": {
+        "general/structure.cpp": OF_EACH_RING,
         "analysis/output_torque.py": SHAFTS_ALONE,
         "gear.hpp": DEFAULT,
         "native/kernels.py": "bodies within the gear make a step too long to be inlined",
@@ -170,6 +178,7 @@ ELSEWHERE = {
     "Encoder": {
         "analysis/linear.py": LINEAR,
     },
+    "SineCosineEncoder": {"analysis/linear.py": LINEAR},
     "Noisy": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
     "Quantised": {"analysis/linear.py": LINEAR, "parameter_drive.hpp": BOUND_TO_ANY},
     "Isothermal": {"drive.hpp": DEFAULT},
@@ -186,7 +195,12 @@ ELSEWHERE = {
         "files/datasheet.py": SHEET,
         "identification/results/gear_so_far.py": SAID,
     },
-    "Stochastic": {"analysis/steady.py": STEADY_RUNNING, "drive_model.hpp": MODEL},
+    "Stochastic": {
+        "analysis/steady.py": STEADY_RUNNING,
+        "drive_model.hpp": MODEL,
+        "kinematic_error/micro_slip.hpp": "whose random function excites the slip",
+    },
+    "Elastic": {"analysis/output_torque.py": SHAFTS_ALONE, "gear.hpp": DEFAULT},
     "LuGre": {
         "identification/results/identifiability.py": DIVIDED,
         "identification/kinds/at_rest.py": "whose breakaway torque ramps tell",

@@ -59,6 +59,18 @@ constexpr void size_like(const Counted<T, capacity>& elements, Others&... others
     ((others.count = elements.count), ...);
 }
 
+/// As many elements as another has, all zero.
+template <class T, int n>
+constexpr Array<T, n> zeros_like(const Array<T, n>&) {
+    return Array<T, n>{};
+}
+template <class T, int capacity>
+constexpr Counted<T, capacity> zeros_like(const Counted<T, capacity>& elements) {
+    Counted<T, capacity> zeros(elements.count);
+    for (int i = 0; i < zeros.count; ++i) zeros[i] = T(0.0);
+    return zeros;
+}
+
 /// f(0), ..., f(n - 1); written out where they are few. A short loop would become one of vectors, whose loads wait for the numbers
 /// just stored one by one.
 template <int n, int i = 0, class F>

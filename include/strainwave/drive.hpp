@@ -95,11 +95,12 @@ struct Drive {
     using FrictionOutput = decltype(Gear{}.friction_output);
     using Hysteresis = decltype(Gear{}.hysteresis);
     using Structure = decltype(Gear{}.structure);
+    using Material = decltype(Gear{}.material);
 
-    using Continuous =
-        strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
-                               typename FrictionInput::State, typename FrictionMesh::State, typename FrictionOutput::State,
-                               typename Structure::State, typename ThermalModel::State, typename Meter::State>;
+    using Continuous = strainwave::Continuous<S, typename Motor::State, typename Control::State, typename Sensors::State,
+                                              typename FrictionInput::State, typename FrictionMesh::State,
+                                              typename FrictionOutput::State, typename Structure::State, typename Material::State,
+                                              typename ThermalModel::State, typename Meter::State>;
     using Discrete = strainwave::Discrete<S, control::DiscreteOf<S, Control>>;
     using State = strainwave::State<S, Continuous, Discrete, typename Hysteresis::State>;
     using Input = strainwave::Input<S>;
@@ -149,6 +150,7 @@ struct Drive {
         visit("friction_mesh", gear.friction_mesh);
         visit("friction_output", gear.friction_output);
         visit("structure", gear.structure);
+        visit("material", gear.material);
         visit("thermal", thermal);
         visit("meter", meter);
     }
@@ -165,6 +167,7 @@ struct Drive {
         x.continuous.friction_mesh = strainwave::initial_state(gear.friction_mesh);
         x.continuous.friction_output = strainwave::initial_state(gear.friction_output);
         x.continuous.structure = strainwave::initial_state(gear.structure);
+        x.continuous.material = strainwave::initial_state(gear.material);
         x.continuous.thermal = strainwave::initial_state(thermal);
         x.continuous.meter = strainwave::initial_state(meter);
         return x;
@@ -174,7 +177,7 @@ struct Drive {
     constexpr State rest() const {
         State x = initial_state();
         // Once is enough without noise; with noise, whose amplitude follows the torque, a few rounds bring the twist to zero.
-        for (int i = 0; i < 8; ++i) settle_gear(x, geometry(x, x.continuous), S(0.0), S(0.0), S(0.0));
+        for (int i = 0; i < 8; ++i) settle_gear(x, geometry(x, x.continuous, Input{}), S(0.0), S(0.0), S(0.0));
         x.input_slip_direction = S(input_sticks() ? 0.0 : 1.0);
         x.output_slip_direction = S(output_sticks() ? 0.0 : 1.0);
         x.continuous.sensors = sensors.steady_state(measurable(x, x.continuous, Input{}, S(0.0)));
@@ -184,7 +187,7 @@ struct Drive {
     /// The gear comes to rest where its spring is twisted so far [rad], under this torque of spring and hysteresis [N.m].
     constexpr void settle_gear(State& x, const Mesh& mesh, const S& twist, const S& torque, const S& temperature) const {
         const auto found =
-            gear.steady_state(x.continuous.structure, gear_shafts(x, x.continuous), mesh, twist, torque, temperature);
+            gear.steady_state(x.continuous.structure, gear_shafts(x, x.continuous, temperature), mesh, twist, torque, temperature);
         x.continuous.structure = found.state;
         x.continuous.transmission_error = found.transmission_error;
     }
@@ -196,10 +199,10 @@ struct Drive {
         if constexpr (load::can_prescribe<Load>) {
             if (prescribes(load)) {
                 const Continuous z = prescribed_motion::placed<S>(*this, x, y, u);
-                return derivatives_of(x, z, u, loaded(geometry(x, z, error...), x, z, u));
+                return derivatives_of(x, z, u, loaded(geometry(x, z, u, error...), x, z, u));
             }
         }
-        return derivatives_of(x, y, u, loaded(geometry(x, y, error...), x, y, u));
+        return derivatives_of(x, y, u, loaded(geometry(x, y, u, error...), x, y, u));
     }
     /// Rates of which those of positions are right: they follow from the speeds.
     constexpr Continuous coasting(Continuous rate, const Continuous& y) const {
@@ -222,7 +225,7 @@ struct Drive {
     template <class... Foreseen>
     SW_RATES constexpr void refresh(Evaluation& at, const Input& u, const Foreseen&... error) const {
         prescribed_motion::place<S>(*this, at.state, u);
-        auto geometry = this->geometry(at.state, at.state.continuous, error...);
+        auto geometry = this->geometry(at.state, at.state.continuous, u, error...);
         commit(at.state, geometry);
         fill(at.derivatives, at.state, at.state.continuous, u, loaded(geometry, at.state, at.state.continuous, u));
     }
@@ -264,6 +267,7 @@ struct Drive {
             }
         }
         rate.structure = mesh.rate;
+        rate.material = gear.material.rate(y.material, mesh.twist_rate);
         rate.transmission_error = y.input_speed * gear.kinematics.inverse_ratio() - y.output_speed;
         rate.output_speed = moving(at.output, output_driving_torque - output.sliding - brake) / output_inertia();
         now.mesh = mesh;
@@ -283,6 +287,7 @@ struct Drive {
         Continuous rates = zeroed<S>(y);
         rates.motor = motor.relaxation_rate();
         rates.sensors = sensors.relaxation_rate();
+        rates.material = gear.material.relaxation_rate();
         rates.friction_input = friction::relaxation_rate(gear.friction_input, y.friction_input, now.contacts.input);
         rates.friction_mesh = friction::relaxation_rate(gear.friction_mesh, y.friction_mesh, now.contacts.mesh);
         rates.friction_output = friction::relaxation_rate(gear.friction_output, y.friction_output, now.contacts.output);
@@ -306,7 +311,7 @@ struct Drive {
     // Bodies within the gear and both shafts, as one block.
 
     static constexpr int coupled_count = coupled_bodies::count<S, Gear, Structure>;
-    using Coupled = Array<S, (coupled_count > 0 ? coupled_count : 1)>;
+    using Coupled = coupled_bodies::Numbers<S, Gear, Structure>;
     constexpr bool couples() const { return !gear.structure.rigid(); }
     constexpr Coupled coupled(const Continuous& y) const { return coupled_bodies::numbers<S, Drive>(y); }
     constexpr void set_coupled(Continuous& y, const Coupled& z) const { coupled_bodies::set_numbers<S, Drive>(y, z); }
@@ -319,7 +324,7 @@ struct Drive {
         return coupled_bodies::side<S>(*this, x, after, dt, fraction);
     }
     constexpr structure::Generator<S> generator(const State& x) const {
-        return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous));
+        return gear.structure.generator(x.continuous.structure, gear_shafts(x, x.continuous, Input{}));
     }
     /// Bodies of the vibration of a gear whose spring has a stiffness [N.m/rad].
     constexpr structure::Bodies<S> bodies(const S& stiffness) const {
@@ -460,15 +465,20 @@ struct Drive {
         return input_angle(x, y) * gear.kinematics.inverse_ratio() - y.transmission_error;
     }
     template <class... Foreseen>
-    constexpr Mesh geometry(const State& x, const Continuous& y, const Foreseen&... error) const {
-        return gear.geometry(y.structure, gear_shafts(x, y), error...);
+    constexpr Mesh geometry(const State& x, const Continuous& y, const Input& u, const Foreseen&... error) const {
+        return gear.geometry(y.structure, gear_shafts(x, y, u), error...);
     }
-    constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y) const {
-        return gear.shafts({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed);
+    constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y, const Input& u) const {
+        return gear_shafts(x, y, temperatures(y, u).gear);
     }
-    constexpr Mesh mesh(const State& x, const Continuous& y, const Input& u) const { return loaded(geometry(x, y), x, y, u); }
+    constexpr typename Gear::Shafts gear_shafts(const State& x, const Continuous& y, const S& temperature) const {
+        return gear.shafts({y.input_angle, x.turns}, y.input_speed, y.transmission_error, y.output_speed, temperature);
+    }
+    constexpr Mesh mesh(const State& x, const Continuous& y, const Input& u) const { return loaded(geometry(x, y, u), x, y, u); }
     constexpr Mesh loaded(const Mesh& geometry, const State& x, const Continuous& y, const Input& u) const {
-        return gear.loaded(geometry, y.structure, gear_shafts(x, y), x.hysteresis, x.held_twist, temperatures(y, u).gear);
+        const S temperature = temperatures(y, u).gear;
+        return gear.loaded(geometry, y.structure, gear_shafts(x, y, temperature), x.hysteresis, x.held_twist,
+                           gear.material.torque(y.material), temperature);
     }
     constexpr thermal::Temperatures<S> temperatures(const Continuous& y, const Input& u) const {
         return thermal.at(y.thermal, u.temperature);
@@ -530,7 +540,7 @@ struct Drive {
                 motor.output(y.motor, now.actuation, rotor(x, y, u, now)),
                 thermal.output(y.thermal, u.temperature),
                 measured(x, y, u, now),
-                gear.output(y.structure, gear_shafts(x, y), now.mesh, friction_output)};
+                gear.output(y.structure, gear_shafts(x, y, u), now.mesh, friction_output)};
     }
 
 private:

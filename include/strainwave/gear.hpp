@@ -4,6 +4,7 @@
 #include <strainwave/facts.hpp>
 #include <strainwave/field.hpp>
 #include <strainwave/kinematic_error/error.hpp>
+#include <strainwave/material/elastic.hpp>
 #include <strainwave/math.hpp>
 #include <strainwave/structure/lumped.hpp>
 #include <strainwave/variation/constant.hpp>
@@ -12,7 +13,7 @@ namespace strainwave {
 
 template <class S, class Kinematics, class KinematicError, class KinematicNoise, class Stiffness, class Hysteresis,
           class FrictionInput, class FrictionMesh, class FrictionOutput, class Softening, class Structure = structure::Lumped<S>,
-          class Variation = variation::Constant<S>>
+          class Variation = variation::Constant<S>, class Material = material::Elastic<S>>
 struct Gear {
     Kinematics kinematics{};
     KinematicError kinematic_error{};
@@ -27,6 +28,7 @@ struct Gear {
     Softening softening{};
     Variation stiffness_variation{};
     Structure structure{};
+    Material material{};
 
     static constexpr auto name = "gear";
     static constexpr auto source =
@@ -36,16 +38,19 @@ struct Gear {
         Strain wave gear: rigid motion, kinematic error, stiffness, hysteresis, damping, friction at three places.
 
         .. math:: \delta = \theta_{in}/i - \theta_{out} - e(\theta_{in}), \qquad
-                  T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta
+                  T = T_{stiffness}(\delta) + T_{hysteresis}(\delta, \text{history}) + c\,\dot\delta + T_{material}(\delta, t)
 
         T acts on the output and, as T (1/i - e'(theta_in)), on the input. The e' term is the reaction of the error on the
         input. The review derives none and the actuator paper omits it; without it energy is not conserved. e is
-        the deterministic kinematic error plus the noise, whose amplitude follows the elastic torque and the input speed.
+        the deterministic kinematic error, at the temperature of the gear, plus the noise, whose amplitude follows the elastic
+        torque and the input speed.
 
         Friction acts at the input (wave generator), at the mesh, and at the output (bearing). The mesh lies between the
         kinematics and the spring: it moves with (1/i - e') times the input speed, at the output's scale, transmits T, and its
         friction acts on the input. Every law of friction is allowed at every place. It depends on the load that its place
         transmits, the angle of the place and the temperature.
+
+        The ``material`` relaxes over time, so that its loss depends on the frequency; hysteresis depends on the path alone.
 
         If the stiffness varies with the angle of the wave generator, the energy in the spring also turns the wave generator.
         The ``structure`` determines whether the bodies between input shaft and output shaft have their own motion.
@@ -76,6 +81,7 @@ struct Gear {
         visit(SW_PART(m, softening, "Fall of stiffness and hysteresis with the temperature"));
         visit(SW_PART(m, stiffness_variation, "Variation of the stiffness with the angle of the wave generator"));
         visit(SW_PART(m, structure, "Bodies within the gear that have their own motion"));
+        visit(SW_PART(m, material, "Torque that relaxes over time: internal damping of flexspline and elastomers"));
     }
 
     /// Parameters that two parts have in common must agree.
@@ -109,14 +115,14 @@ struct Gear {
         return Gear<S, decltype(compiled(kinematics)), decltype(compiled(kinematic_error)), decltype(compiled(kinematic_noise)),
                     decltype(compiled(stiffness)), decltype(compiled(hysteresis)), decltype(compiled(friction_input)),
                     decltype(compiled(friction_mesh)), decltype(compiled(friction_output)), decltype(compiled(softening)),
-                    decltype(compiled(structure)), decltype(compiled(stiffness_variation))>{
+                    decltype(compiled(structure)), decltype(compiled(stiffness_variation)), decltype(compiled(material))>{
             compiled(kinematics),      compiled(kinematic_error),
             compiled(kinematic_noise), compiled(stiffness),
             compiled(hysteresis),      damping,
             compiled(friction_input),  compiled(friction_mesh),
             compiled(friction_output), input_inertia,
             compiled(softening),       compiled(stiffness_variation),
-            compiled(structure)};
+            compiled(structure),       compiled(material)};
     }
 
     using Shafts = structure::Shafts<S>;
@@ -125,9 +131,9 @@ struct Gear {
     static constexpr bool always_rigid = size_of<S, Inner> == 0;
     using Mesh = structure::Mesh<S, Inner>;
 
-    constexpr Shafts shafts(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error,
-                            const S& output_speed) const {
-        return {input_angle, input_speed, transmission_error, output_speed, kinematics.inverse_ratio()};
+    constexpr Shafts shafts(const Angle<S>& input_angle, const S& input_speed, const S& transmission_error, const S& output_speed,
+                            const S& temperature) const {
+        return {input_angle, input_speed, transmission_error, output_speed, kinematics.inverse_ratio(), temperature};
     }
 
     /// True if the kinematic error at two angles takes little longer than at one.
@@ -152,25 +158,34 @@ struct Gear {
         }
         return mesh;
     }
-    /// Rate of the random error [rad/s] from the change of its amplitude, where the input shaft accelerates at `acceleration`
-    /// [rad/s2]; what the angle does is in the rate of the deformation.
-    constexpr S noise_rate(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& acceleration) const {
-        if (!kinematic_noise.active()) return S(0.0);
+    /// Rate of the error [rad/s] at constant angles: of the random error, whose amplitude changes as the input shaft accelerates
+    /// at `acceleration` [rad/s2], and of a gear that warms up at `warming` [K/s]. What the angle does is in the rate of the
+    /// deformation.
+    constexpr S error_drift(const Inner& inner, const Shafts& at, const Mesh& mesh, const S& acceleration, const S& warming) const {
+        const bool warms = kinematic_error::follows_temperature(kinematic_error);
+        if (!kinematic_noise.active() && !warms) return S(0.0);
         const auto generator = structure.generator(inner, at);
-        const Engaged without = engaged_without_noise(inner, at, kinematic_error.at(generator.angle));
+        const Engaged without = engaged_without_noise(inner, at, full_error(inner, at));
+        S by_warming{0.0};
+        if (warms)
+            by_warming =
+                without.per_output * without.relief * kinematic_error::per_kelvin<S>(kinematic_error, generator.angle) * warming;
+        if (!kinematic_noise.active()) return by_warming;
         const S rate = structure.rigid() ? without.per_output * (at.inverse_ratio * at.input_speed - at.output_speed) -
-                                               without.error.slope * at.input_speed
+                                               without.error.slope * at.input_speed - by_warming
                                          : mesh.twist_rate;
         const S torque = stiffness.torque(without.twist), torque_rate = stiffness.tangent(without.twist) * rate;
-        return kinematic_noise.at(generator.angle, torque, generator.speed).value *
-               kinematic_noise.growth(torque, torque_rate, generator.speed,
-                                      structure.generator_acceleration(mesh.rate, acceleration));
+        const S noise = kinematic_noise.drift(generator.angle, torque, torque_rate, generator.speed,
+                                              structure.generator_acceleration(mesh.rate, acceleration));
+        return by_warming + noise;
     }
-    /// The torques of a gear at these angles and a temperature [K], its hysteresis last brought up to date at `held_twist`.
+    /// The torques of a gear at these angles and a temperature [K], its hysteresis last brought up to date at `held_twist`, its
+    /// material holding a torque `relaxing` [N.m].
     constexpr Mesh loaded(Mesh mesh, const Inner& inner, const Shafts& at, const typename Hysteresis::State& held,
-                          const S& held_twist, const S& temperature) const {
+                          const S& held_twist, const S& relaxing, const S& temperature) const {
         variation::Factor<S> factor = stiffness_factor(inner, at);
         mesh.spring = held_torque(mesh.twist, held, mesh.twist - held_twist, temperature, factor.value) + damping * mesh.twist_rate;
+        if (material.active()) mesh.spring = mesh.spring + relaxing;
         auto reaction = structure.reaction(inner, at, mesh, load(mesh, turning(factor, mesh.twist, temperature)));
         mesh.torque = reaction.torque;
         mesh.input_torque = reaction.input_torque;
@@ -256,8 +271,9 @@ struct Gear {
         over_twists(twist, [&](const S& tangent) { largest = max(largest, tangent); });
         largest = stiffness_variation.largest() * largest;
         const S remembered = max(steepest_loading(twist, S(1.0)), steepest_loading(twist, S(-1.0)));
-        if (!softening.active()) return largest + remembered;
-        return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered;
+        const S relaxing = material.largest_stiffness();
+        if (!softening.active()) return largest + remembered + relaxing;
+        return softening.of_stiffness(temperature) * largest + softening.of_hysteresis(temperature) * remembered + relaxing;
     }
 
     /// Largest part that the even reaction leaves out at these twists and this temperature, over a turn of the wave generator.
@@ -271,7 +287,7 @@ struct Gear {
         structure::Unevenness<S> found{max(stiffest - even, even - softest), S(0.0), S(0.0), S(0.0)};
         const auto inner = initial_state(structure);
         for (int i = 0; i < samples; ++i) {
-            const Shafts at = shafts({S((2.0 * i / samples - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0));
+            const Shafts at = shafts({S((2.0 * i / samples - 1.0) * pi), S(0.0)}, S(0.0), S(0.0), S(0.0), temperature);
             const Engaged stood = engaged_without_noise(inner, at, full_error(inner, at));
             found.slope = max(found.slope, abs(stood.error.slope));
             found.per_twist = max(found.per_twist, abs(stood.per_twist));
@@ -336,11 +352,11 @@ private:
         kinematic_error::Error<S> error;
         S deformation;
         S twist;  ///< at which the amplitude of the noise is evaluated
-        S per_output{1.0}, per_twist{0.0};
+        S per_output{1.0}, per_twist{0.0}, relief{1.0};
     };
 
     constexpr kinematic_error::Error<S> full_error(const Inner& inner, const Shafts& at) const {
-        return kinematic_error.at(structure.generator(inner, at).angle);
+        return kinematic_error::warmed<S>(kinematic_error, structure.generator(inner, at).angle, at.temperature);
     }
     /// The noise follows the elastic torque that there is without it, so that neither waits for the other.
     constexpr Engaged engaged(const Inner& inner, const Shafts& at, const kinematic_error::Error<S>& full) const {
@@ -361,9 +377,9 @@ private:
         const kinematic_error::Relief<S> relief = kinematic_error::relief(kinematic_error, S(stiffness.torque(twist)));
         const S error = relief.factor * full.value, slope = relief.factor * full.slope;
         const S per_twist = full.value * relief.slope * stiffness.tangent(twist);
-        if (!structure.rigid()) return {{error, slope}, gap - error, twist, S(1.0), per_twist};
+        if (!structure.rigid()) return {{error, slope}, gap - error, twist, S(1.0), per_twist, relief.factor};
         const S per_output = S(1.0) / (S(1.0) + per_twist);
-        return {{error, per_output * slope}, gap - error, twist, per_output};
+        return {{error, per_output * slope}, gap - error, twist, per_output, S(0.0), relief.factor};
     }
     /// The twist that is left of a gap by an error that its own torque relieves, rad: Newton's iteration, from the error's full
     /// size on. What is left to find is the square of what was left before.

@@ -57,8 +57,8 @@ private:
     constexpr S round() {
         auto& y = x.continuous;
         const S inverse = drive.gear.kinematics.inverse_ratio();
-        const auto mesh = drive.geometry(x, y);
-        spring.vary(drive.gear.stiffness_factor(y.structure, drive.gear_shafts(x, y)).value);
+        const auto mesh = drive.geometry(x, y, u);
+        spring.vary(drive.gear.stiffness_factor(y.structure, drive.gear_shafts(x, y, u)).value);
         move(mesh.per_input, mesh.per_output);
         const S total_input = y.input_angle + S(2.0 * pi) * x.turns;
         const bool both = known.knows(input_angle) && known.knows(output_angle);
@@ -69,13 +69,13 @@ private:
                         : known.knows(output_angle) ? (known[output_angle] + error) / inverse
                                                     : total_input;
         place(input, error);
-        return drive.geometry(x, y).twist;
+        return drive.geometry(x, y, u).twist;
     }
     /// The twist of the spring at this difference of the shaft angles [rad]. The share of the other joints is that of the last
     /// round, and follows their mean stiffness beyond it.
     constexpr S twist_between(const typename decltype(Drive{}.gear)::Mesh& mesh, const S& between) {
         if (drive.gear.structure.rigid()) return between - mesh.error;
-        const S compliance = drive.gear.compliance(drive.gear_shafts(x, x.continuous), mesh), before = mesh.twist;
+        const S compliance = drive.gear.compliance(drive.gear_shafts(x, x.continuous, u), mesh), before = mesh.twist;
         settle_gear(mesh, before);
         const S others = x.continuous.transmission_error - before - compliance * spring.torque(before);
         return spring.twist_within(between - others, compliance);

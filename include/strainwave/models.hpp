@@ -7,8 +7,10 @@
 #include <strainwave/kinematics.hpp>
 #include <strainwave/list.hpp>
 #include <strainwave/load/models.hpp>
+#include <strainwave/material/models.hpp>
 #include <strainwave/meter/models.hpp>
 #include <strainwave/motor/models.hpp>
+#include <strainwave/ring/models.hpp>
 #include <strainwave/sensor/models.hpp>
 #include <strainwave/softening/models.hpp>
 #include <strainwave/stiffness/models.hpp>

@@ -39,10 +39,10 @@ constexpr typename System::Continuous relaxation_rate(const System& system, cons
 ///
 ///     coupled_count                        largest count of them
 ///     couples()                            true if its models have them
-///     coupled(continuous)                  -> Array<S, coupled_count>, in order; of rates, too
+///     coupled(continuous)                  -> Array, or Counted, of the numbers, in order; of rates, too
 ///     set_coupled(continuous, numbers)     in place
 ///     coupled_mode(state)                  -> Array<S, any>: further numbers that A depends on
-///     coupled_rate(mode, numbers)          -> Array<S, coupled_count>: A z
+///     coupled_rate(mode, numbers)          -> as many: A z
 ///     side(state)                          turns its sign where the rates jump as the numbers change
 ///     side(state, after, dt, fraction)     on the way from one state to another, `dt` [s] later
 ///

@@ -27,9 +27,11 @@ from ._core import (
     kinematic_error as kinematic_error,
     kinematics as kinematics,
     loads as loads,
+    material as material,
     meter as meter,
     motor as motor,
     onset as onset,
+    ring as ring,
     sensor as sensor,
     softening as softening,
     stiffness as stiffness,
@@ -39,7 +41,6 @@ from ._core import (
 )
 from .analysis.compare import compare as compare
 from .analysis.linear import linearise as linearise
-from .analysis.output_torque import output_torque as output_torque
 from .files.gear_set import GearSet as GearSet, catalogue as catalogue, load as load, save as save
 from .files.ratings import check_ratings as check_ratings
 from .files.recording import Recording as Recording
@@ -52,7 +53,7 @@ from .orders.two_encoders import transmission_error as transmission_error
 from .report.listing import listing as listing
 from .simulation import scenario as scenario
 from .simulation.controller import simulate_controlled as simulate_controlled
-from .simulation.ensemble import Ensemble as Ensemble, simulate_many as simulate_many, simulate_to as simulate_to
+from .simulation.ensemble import Ensemble as Ensemble, simulate_many as simulate_many
 from .simulation.run import Run as Run, simulate as simulate, simulate_adaptively as simulate_adaptively
 from .tuning.compensate import compensate as compensate
 from .tuning.loops import cascade as cascade

@@ -8,6 +8,7 @@
 #include "kinematic_error.hpp"
 #include "kinematics.hpp"
 #include "load.hpp"
+#include "material.hpp"
 #include "motor.hpp"
 #include "sensor.hpp"
 #include "spring_factors.hpp"
@@ -19,7 +20,7 @@ namespace strainwave::general {
 
 template <class S>
 using GeneralGear = Gear<S, Kinematics<S>, KinematicError<S>, KinematicNoise<S>, Stiffness<S>, Hysteresis<S>, Friction<S>,
-                         Friction<S>, Friction<S>, Softening<S>, Structure<S>, Variation<S>>;
+                         Friction<S>, Friction<S>, Softening<S>, Structure<S>, Variation<S>, Material<S>>;
 
 template <class S>
 using GeneralDrive = Drive<S, Control<S>, Motor<S>, GeneralGear<S>, Load<S>, Sensors<S, Sensor<S>>, Thermal<S>, Meter<S>>;

@@ -11,6 +11,9 @@ struct KinematicError : Part {
     void read(kernel::Reader<S>& from);
 
     kinematic_error::Error<S> at(const Angle<S>& angle) const;
+    bool follows_temperature() const;
+    kinematic_error::Error<S> warmed(const Angle<S>& angle, const S& temperature) const;
+    S per_kelvin(const Angle<S>& angle) const;
     S side(const Angle<S>& angle) const;
     bool follows_load() const;
     kinematic_error::Relief<S> relief(const S& torque) const;
@@ -29,7 +32,7 @@ struct KinematicNoise : Part {
 
     bool active() const;
     kinematic_error::Error<S> at(const Angle<S>& angle, const S& torque, const S& speed) const;
-    S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const;
+    S drift(const Angle<S>& angle, const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const;
     MaxChange<S> max_change() const;
 };
 

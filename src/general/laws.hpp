@@ -58,11 +58,15 @@ struct Laws<S, List<Law...>, Inner> {
     template <class Note>
     static void read(Part& part, kernel::Reader<S>& from, const Note& note) {
         part.chosen = *from.laws++;
-        read_chosen<0>(part, from, note);
+        read_chosen(part, from, note);
+    }
+    /// The parameters of the law chosen.
+    static void read_chosen(Part& part, kernel::Reader<S>& from) {
+        read_chosen(part, from, [](const auto&) {});
     }
 
 private:
-    template <int i, class Note>
+    template <int i = 0, class Note>
     static void read_chosen(Part& part, kernel::Reader<S>& from, const Note& note) {
         if constexpr (i < count) {
             if (part.chosen != i) return read_chosen<i + 1>(part, from, note);

@@ -1,5 +1,6 @@
 #include "structure.hpp"
 
+#include <strainwave/ring/models.hpp>
 #include <strainwave/structure/models.hpp>
 
 #include "laws.hpp"
@@ -7,15 +8,38 @@
 
 namespace strainwave::general {
 
+namespace {
+
+template <template <class...> class Ring>
+struct With {
+    template <class S>
+    using Staged = structure::Staged<S, Ring<S>, Variation<S>>;
+};
+template <class L>
+struct WithEach;
+template <template <class...> class... Ring>
+struct WithEach<List<Ring...>> {
+    using type = List<structure::Lumped, With<Ring>::template Staged...>;
+};
+
+}  // namespace
+
+/// Stages with each vibration of the ring are a law of their own, so that the state of each has a fixed size.
 template <class S>
-using StructureLaws = Laws<S, structure::Models, Variation<S>>;
+using StructureLaws = Laws<S, WithEach<ring::Models>::type>;
 
 template <class Reaction, class State>
 Reaction pack_reaction(const auto& reaction) {
     return {reaction.torque, reaction.input_torque, pack_slots<State>(reaction.rate)};
 }
 
-SW_READ(Structure)
+/// The law of the structure; after it, of one in stages, that of its ring.
+template <class S>
+void Structure<S>::read(kernel::Reader<S>& from) {
+    chosen = *from.laws++;
+    if (chosen > 0) chosen += *from.laws++;
+    StructureLaws<S>::read_chosen(*this, from);
+}
 SW_STATE(Structure)
 SW_OUTPUT_PLACES(Structure)
 SW_CALL(Structure, bool, rigid, (), law.rigid())

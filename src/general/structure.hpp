@@ -8,8 +8,8 @@ namespace strainwave::general {
 /// Bodies within a gear, by any law.
 template <class S>
 struct Structure : Part {
-    using State = Storage<S, 8>;
-    using Output = OutputStorage<S, 9>;
+    using State = Storage<S, 24>;
+    using Output = OutputStorage<S, 10>;
     using Shafts = structure::Shafts<S>;
     using Mesh = structure::Mesh<S, State>;
     using Load = structure::Load<S>;

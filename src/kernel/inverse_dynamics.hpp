@@ -37,8 +37,8 @@ S needed_torque(const Drive& drive, typename Drive::State& x, const Motion& now,
     x.turns = S(turns);
     x.continuous.input_speed = speed;
     x.continuous.transmission_error = S(0.0);
-    drive.settle_gear(x, drive.geometry(x, x.continuous), S(0.0), S(0.0), S(0.0));
-    auto mesh = drive.geometry(x, x.continuous);
+    drive.settle_gear(x, drive.geometry(x, x.continuous, u), S(0.0), S(0.0), S(0.0));
+    auto mesh = drive.geometry(x, x.continuous, u);
     const S per_shaft = mesh.per_input / mesh.per_output;
     x.continuous.output_speed = per_shaft * speed;
     x.input_slip_direction = sign(speed);

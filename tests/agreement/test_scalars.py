@@ -149,9 +149,15 @@ OTHER_LAWS: dict[str, dict[str, Any]] = {
             order=[2.0, 2.02],
             change=[2e-6, 1e-6],
             phase=[0.5, 1.0],
-            temperature=313.15,
+            reference_temperature=273.15,
         )
     },
+    "micro_slip": {
+        "kinematic_noise": sw.kinematic_error.MicroSlip(
+            excitation=0.05, friction=3.0, load_share=0.2, stiffness=5e3, lowest_order=2.0, highest_order=12.0, seed=5
+        )
+    },
+    "generalised_maxwell": {"material": sw.material.GeneralisedMaxwell(stiffness=[2e3, 5e2], relaxation_time=[2e-3, 0.05])},
     "regimes": {
         "hysteresis": sw.hysteresis.Regimes(
             positive_unloading=4e3,
@@ -254,7 +260,13 @@ def test_derivatives_by_the_numbers_of_every_law_are_what_differences_show(name:
     drive = BRISTLE.replace(gear=BRISTLE.gear.replace(**law))
     (part,) = law
     base, known = numbers(drive), [path for path, *_ in _core.parameters(drive)]
-    fixed = (".domain_start", ".domain_end", ".seed", ".reduction")  # the last is the ratio of the gear
+    fixed = (
+        ".domain_start",
+        ".domain_end",
+        ".seed",
+        ".reduction",
+        ".temperature",
+    )  # the ratio of the gear, and that of the run
     own = [i for i, path in enumerate(known) if path.startswith(f"gear.{part}.") and not path.endswith(fixed)]
     run, slopes = differentiate(drive, Excitation(SWING), own, DT, SAMPLE)
     for i, slope in zip(own, slopes, strict=True):

@@ -34,7 +34,7 @@ from strainwave.simulation.excitation import Excitation
 from strainwave.simulation.run import METHOD_WORDS
 from strainwave.simulation.signals import load_input, outputs
 
-from tests.laws.test_gear import has_memory, passive, speeds
+from tests.laws.test_gear import has_memory, passive, speeds, steady
 from tests.support.strategies import AROUND_ONE, SUITED, TYPICAL, Field, kinds_of, suited
 from tests.support.workers import answers
 
@@ -49,7 +49,9 @@ SILENT = WRONG + "not a number, without a word"
 DIFFERENT = WRONG + "not what it is alone"
 # Numbers that differ from member to member only at a cost that is documented: a last digit where some are whole and others are
 # not; instants of sampling, which all members share and which nothing is derived by; and what is counted.
-SHARED = re.compile(rf"\.({'|'.join(sorted(COUNTED_NAMES))})$|\.order\[|\.density\.exponent$|^control\.(period|delay)$")
+SHARED = re.compile(
+    rf"\.({'|'.join(sorted(COUNTED_NAMES))})(\[\d+\])?$|\.order\[|\.density\.exponent$|^control\.(period|delay)$"
+)
 
 
 def magnitude(unit: str, low: float | None, high: float | None, zero: bool, random: np.random.Generator) -> float:
@@ -66,6 +68,13 @@ def number(field: Field, random: np.random.Generator) -> float:
     return magnitude(field["unit"], field["min"], field["max"], zero, random)
 
 
+def element(field: Field, random: np.random.Generator) -> float:
+    """A number, or one of a sequence."""
+    if field["whole"]:
+        return int(random.integers(int(field["min"]), min(int(field["max"]), 1000) + 1))
+    return number(field, random)
+
+
 def value(field: Field, length: int, random: np.random.Generator) -> Any:
     match field["kind"]:
         case "part":
@@ -73,12 +82,10 @@ def value(field: Field, length: int, random: np.random.Generator) -> Any:
             return model(options[random.integers(len(options))], random)
         case "choice":
             return field["options"][random.integers(len(field["options"]))]
-        case "count":
-            return int(random.integers(int(field["min"]), min(int(field["max"]), 1000) + 1))
         case "sequence":
-            return [number(field, random) for _ in range(length)]
+            return [element(field, random) for _ in range(length)]
         case _:
-            return number(field, random)
+            return element(field, random)
 
 
 def model(kind: Any, random: np.random.Generator) -> Any:
@@ -233,8 +240,7 @@ def check_powers(drive: sw.Drive, run: sw.Recording) -> None:
 def known_speeds(gear: sw.Gear, run: sw.Recording) -> Mapping[str, NDArray[np.float64]]:
     """Those of the mesh only where the slope of the error is told by the angle, and that to more than rounding."""
     noise = gear.kinematic_noise
-    varies = noise.active and (noise.load_sensitivity != 0.0 or noise.speed_sensitivity != 0.0)
-    if varies or np.abs(run["input_angle"]).max() > FARTHEST:
+    if not steady(noise) or np.abs(run["input_angle"]).max() > FARTHEST:
         return {"friction_input": run["input_speed"], "friction_output": run["output_speed"]}
     return speeds(gear, run)
 

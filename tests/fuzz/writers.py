@@ -29,7 +29,9 @@ def _recording() -> sw.Recording:
 
 def _simulate(path: Any) -> Path:
     drive = sw.Drive(load=sw.loads.Inertia(inertia=0.1))
-    return sw.simulate_to(path, drive, sw.scenario.constant(1.0, 0.05), {"load.inertia": [0.1, 0.2]}, 5e-4, threads=1)
+    return sw.simulation.simulate_to(
+        path, drive, sw.scenario.constant(1.0, 0.05), {"load.inertia": [0.1, 0.2]}, 5e-4, threads=1
+    )
 
 
 def _page(path: Any) -> None:

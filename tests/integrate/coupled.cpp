@@ -10,13 +10,13 @@ using namespace strainwave;
 constexpr int size = 6;
 
 /// Reads a matrix from the input, row by row.
-bool read(integrate::Square<double, size>& z) {
+bool read(integrate::Square<Array<double, size>>& z) {
     for (int i = 0; i < size; ++i)
         for (int j = 0; j < size; ++j)
             if (std::scanf("%lf", &z[j][i]) != 1) return false;
     return true;
 }
-void write(const integrate::Square<double, size>& z) {
+void write(const integrate::Square<Array<double, size>>& z) {
     for (int i = 0; i < size; ++i)
         for (int j = 0; j < size; ++j) std::printf("%.17g ", z[j][i]);
     std::printf("\n");
@@ -24,8 +24,8 @@ void write(const integrate::Square<double, size>& z) {
 
 /// exp Z, phi_1, phi_2 and phi_3 of each matrix of the input, and whether a pack of several gives the same bits.
 void phi_functions() {
-    using Phi = integrate::PhiFunctions<double, size>;
-    using Square = integrate::Square<double, size>;
+    using Phi = integrate::PhiFunctions<Array<double, size>>;
+    using Square = integrate::Square<Array<double, size>>;
     using Lanes = Pack<4>;
     Square z;
     while (read(z)) {
@@ -36,11 +36,11 @@ void phi_functions() {
         write(phi.first);
         write(phi.second);
         write(phi.third);
-        integrate::Square<Lanes, size> several, room_of_several;
+        integrate::Square<Array<Lanes, size>> several, room_of_several;
         for (int j = 0; j < size; ++j)
             for (int i = 0; i < size; ++i)
                 for (int lane = 0; lane < 4; ++lane) several[j][i].set(lane, z[j][i] * (lane == 1 ? 1.0 : 0.01 * lane));
-        integrate::PhiFunctions<Lanes, size> packed;
+        integrate::PhiFunctions<Array<Lanes, size>> packed;
         packed.set(several, room_of_several);
         int different = 0;
         for (int j = 0; j < size; ++j)

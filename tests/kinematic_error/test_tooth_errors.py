@@ -362,6 +362,68 @@ def test_the_deviation_of_a_random_spline_is_in_the_mean_about_the_one_asked_for
     assert np.mean(ranges) == pytest.approx(0.9e-5, rel=0.05)
 
 
+# Flanks
+
+
+def flanks_of_single_pairs(law: ToothErrors, theta: Array) -> Array:
+    """Mean flank deviation over the engaged pairs, from the place of each tooth of the fixed spline and its own weight."""
+    circular_spline_held = str(law.fixed) == "circular_spline"
+    teeth = law.circular_spline_teeth if circular_spline_held else law.flexspline_teeth
+    half_zone = 0.5 * math.pi * law.engaged_share * law.flexspline_teeth / teeth
+    places = np.linspace(0.0, 1.0, len(law.flank_deviation))
+    mean = np.zeros_like(theta)
+    for lobe, share in ((0.0, law.first_lobe), (math.pi, 1.0 - law.first_lobe)):
+        gone = np.subtract.outer(theta + lobe, 2.0 * math.pi * np.arange(teeth) / teeth)  # by the lobe, of each tooth
+        gone -= 2.0 * math.pi * np.rint(gone / (2.0 * math.pi))
+        weight = np.where(np.abs(gone) < half_zone, 1.0 + np.cos(math.pi * gone / half_zone), 0.0)
+        deviation = np.interp(0.5 * (1.0 + gone / half_zone), places, law.flank_deviation)
+        mean += share * (weight * deviation).sum(axis=1) / weight.sum(axis=1)
+    return mean / law.pitch_radius * (1.0 if circular_spline_held else -1.0)
+
+
+@every_fixed
+@pytest.mark.parametrize("teeth", [(100, 102), (101, 103)])
+@pytest.mark.parametrize("first_lobe", [0.5, 0.8])
+@given(st.lists(st.floats(-1e-5, 1e-5), min_size=2, max_size=16), st.floats(0.1, 0.4))
+def test_each_multiple_of_passing_flanks_is_that_of_the_sum_over_single_pairs(
+    fixed: str, teeth: tuple[int, int], first_lobe: float, profile: list[float], engaged_share: float
+) -> None:
+    """Over one passing of a tooth. The mean over single pairs divides by a stiffness that varies with them: twice its share."""
+    z_f, z_c = teeth
+    numbers = {"flexspline_teeth": z_f, "circular_spline_teeth": z_c, "engaged_share": engaged_share}
+    law = ToothErrors(**(GEAR | numbers), fixed=fixed, first_lobe=first_lobe, flank_deviation=profile)
+    passing = z_c if fixed == "circular_spline" else z_f
+    samples = 1024
+    theta = 2.0 * math.pi / passing * np.arange(samples) / samples
+    known, found = (np.fft.rfft(values)[1:5] / samples for values in (flanks_of_single_pairs(law, theta), law.error(theta)))
+    half_zone = 0.5 * math.pi * engaged_share * z_f / passing
+    relative = 2.0 * float(np.abs(window(np.arange(1, 50) * passing, 2.0 * half_zone)).sum())
+    largest = max(abs(value) for value in profile) / RADIUS
+    np.testing.assert_allclose(found, known, rtol=0.0, atol=2.0 * relative * float(np.abs(known).max()) + 3e-6 * largest)
+
+
+@every_fixed
+def test_flanks_have_the_order_of_the_teeth_of_the_fixed_spline(fixed: str) -> None:
+    """Of two equal lobes an odd number of teeth leaves every other multiple."""
+    for z_f, z_c, first in ((100, 102, 1), (101, 103, 2)):
+        law = ToothErrors(
+            **(GEAR | {"flexspline_teeth": z_f, "circular_spline_teeth": z_c, "engaged_share": 0.1}),
+            fixed=fixed,
+            flank_deviation=[5e-6, 0.0, 1e-6],
+        )
+        theta = 2.0 * math.pi * np.arange(4096) / 4096
+        waves = np.abs(np.fft.rfft(law.error(theta)))
+        passing = z_c if fixed == "circular_spline" else z_f
+        assert np.flatnonzero(waves > 1e-9 * waves.max())[0] == first * passing
+
+
+def test_a_constant_flank_deviation_is_none_and_one_place_alone_is_refused() -> None:
+    law = ToothErrors(**GEAR, flank_deviation=[3e-6, 3e-6, 3e-6])
+    assert np.abs(law.error(np.linspace(0.0, 0.1, 50))).max() < 1e-15 * 3e-6 / RADIUS * 1e3
+    with pytest.raises(ValueError, match="flank_deviation must have at least 2 elements"):
+        ToothErrors(**GEAR, flank_deviation=[3e-6])
+
+
 # What is refused
 
 

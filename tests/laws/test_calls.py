@@ -70,9 +70,9 @@ def test_text_is_no_argument(verb: Any) -> None:
 
 @each("law", [law for law in LAWS if hasattr(law, "State")])
 def test_a_state_of_another_kind_is_refused(law: Any) -> None:
-    time = {"speed": [0.0, 1.0]} if "speed" in law.trace.__doc__ else {}
+    takes = [name for name in ("time", "speed", "twist", "torque") if f"{name}: " in law.trace.__doc__]
     for wrong in (3, None, sw.Drive().rest(), law.State.__new__(law.State)):
-        text = one_line(lambda wrong=wrong: law.trace([0.0, 1.0], **time, state=wrong))
+        text = one_line(lambda wrong=wrong: law.trace(**{name: [0.0, 1.0] for name in takes}, state=wrong))
         assert text.startswith(f"{law.name}.trace: state must be a ")
 
 
@@ -143,7 +143,7 @@ def test_a_number_at_the_end_of_all_is_answered_with_a_number_or_refused(verb: A
         assert not np.isnan(answer).any()
 
 
-@each("hysteresis", [law for law in LAWS if hasattr(law, "work")])
+@each("hysteresis", [made(kind) for kind in _core.families["hysteresis"].values()])
 @each("torque", [1e-300, 5e-324, -1e-300, 1e300, -1e308])
 def test_a_gear_turns_any_torque_into_a_twist_or_refuses_it(hysteresis: Any, torque: float) -> None:
     gear = sw.Gear(hysteresis=hysteresis)

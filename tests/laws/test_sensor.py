@@ -22,6 +22,7 @@ SENSORS: dict[str, Any] = {
     "first_order": sw.sensor.FirstOrder(time_constant=2e-3),
     "second_order": sw.sensor.SecondOrder(natural_frequency=900.0),
     "encoder": sw.sensor.Encoder(counts=4096, offset=0.1, eccentricity=1e-3, eccentricity_phase=0.3),
+    "sine_cosine_encoder": sw.sensor.SineCosineEncoder(periods=32, sine_offset=0.02, amplitude_ratio=1.05),
     "delayed": sw.sensor.Delayed(delay=2e-3),
     "noisy": sw.sensor.Noisy(amplitude=0.01, bandwidth=300.0, seed=5),
     "quantised": sw.sensor.Quantised(resolution=1e-3),
@@ -64,7 +65,10 @@ def step_of(sensor: Any) -> float:
     """From one reading to the next [rad]; 0 if it does not read in steps."""
     if isinstance(sensor, sw.sensor.Quantised):
         return max(sensor.resolution, step_of(sensor.law))
-    return tau / inner(sensor).counts if isinstance(inner(sensor), sw.sensor.Encoder) else 0.0
+    law = inner(sensor)
+    if isinstance(law, sw.sensor.SineCosineEncoder):  # of tracks that are a twelfth of an amplitude long at the least
+        return 12.0 * law.converter_step / law.periods
+    return tau / law.counts if isinstance(law, sw.sensor.Encoder) else 0.0
 
 
 @given(models("sensor"))
@@ -79,6 +83,10 @@ def test_it_begins_settled_and_stays_where_all_stands_still(sensor: Any) -> None
         wanted = law.gain * angle + law.offset
     elif isinstance(law, sw.sensor.Encoder):
         wanted = angle + law.offset + law.eccentricity * np.sin(angle + law.eccentricity_phase)
+    elif isinstance(law, sw.sensor.SineCosineEncoder):
+        phase = law.periods * angle
+        tracks = np.cos(phase) + law.cosine_offset, law.amplitude_ratio * np.sin(phase + law.quadrature_error) + law.sine_offset
+        wanted = angle + np.angle(complex(*tracks) * np.exp(-1j * phase)) / law.periods
     assert np.abs(run["motor_torque"] - wanted).max() <= step_of(sensor) + noise + 1e-9 * (abs(wanted) + 1.0)
 
 

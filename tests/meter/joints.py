@@ -13,6 +13,7 @@ from tests.support.joint_sized import INPUT_SIZES, OUTPUT_SIZES, joint_sized
 from tests.support.strategies import made
 
 NOISE = sw.kinematic_error.Stochastic(amplitude=2e-5, seed=3, load_sensitivity=0.05, speed_sensitivity=0.01)
+SLIP = sw.kinematic_error.MicroSlip(excitation=0.02, friction=2.0, load_share=0.3, stiffness=1e4, seed=3)
 FOURIER = sw.kinematic_error.Fourier(order=[2.0, 4.0], amplitude=[1e-4, 3e-5], phase=[0.3, -1.1])
 SOFTENING = sw.softening.ThermalSoftening(stiffness_fall=3e-3, hysteresis_fall=5e-3)
 HEATING = sw.thermal.Heating(
@@ -64,7 +65,7 @@ GEAR_PARTS: dict[str, list[Any]] = {
         made(sw.kinematic_error.Misalignment, offset=4e-3, housing_tilt_x=2e-3, generator_tilt_y=2e-3),
         made(sw.kinematic_error.ToothErrors, flexspline_deviation=1.5e-5, circular_spline_deviation=1.5e-5, seed=1),
     ],
-    "kinematic_noise": [NOISE],
+    "kinematic_noise": [NOISE, SLIP],
     "stiffness": [
         sw.stiffness.Linear(k=1.2e4),
         sw.stiffness.Piecewise(k1=1e4, k2=5e3, knee=1e-4),
@@ -107,6 +108,7 @@ GEAR_PARTS: dict[str, list[Any]] = {
     "friction_mesh": FRICTIONS,
     "friction_output": FRICTIONS,
     "softening": [SOFTENING],
+    "material": [sw.material.Elastic(), sw.material.GeneralisedMaxwell(stiffness=[2e3, 800.0], relaxation_time=[1e-3, 0.02])],
 }
 
 # Each moves under a command of 0.02 rad, or rad/s: voltages for motors that take them, and a share of it for the others.
@@ -168,6 +170,7 @@ SENSORS = [
     sw.sensor.FirstOrder(time_constant=1e-3),
     sw.sensor.SecondOrder(natural_frequency=2e3, damping_ratio=0.7),
     sw.sensor.Encoder(counts=4096, offset=1e-3),
+    sw.sensor.SineCosineEncoder(periods=64, sine_offset=0.02, converter_step=2e-3),
     sw.sensor.Delayed(law=sw.sensor.FirstOrder(time_constant=1e-3), delay=4e-3),
     sw.sensor.Noisy(law=sw.sensor.Gain(gain=0.98), amplitude=1e-4, bandwidth=500.0, seed=3),
     sw.sensor.Quantised(law=sw.sensor.FirstOrder(time_constant=1e-3), resolution=1e-3),
@@ -200,7 +203,8 @@ def controls(scale: float) -> list[Any]:
     return [*laws, *(sw.control.Sampled(law=law, period=1e-3, delay=2e-4) for law in laws[1:])]
 
 
-BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled"}  # in tests/structure/test_staged.py; here a gear has one spring
+# In tests/structure, tests/ring and tests/variation; here a gear has one spring.
+BALANCED_WITH_STAGES = {"Staged", "Periodic", "Scaled", "Rigid", "Modes", "BallBearing"}
 PART_OF_FAMILY = {"friction": "friction_input"} | {
     name: name for name in ("kinematic_error", "stiffness", "hysteresis", "softening")
 }
@@ -235,7 +239,9 @@ def drawn_by(seed: int) -> sw.Drive:
     gear = sw.Gear(damping=5.0, input_inertia=2e-5, **{name: one_of(choices) for name, choices in GEAR_PARTS.items()})
     sensors = {field["name"]: one_of([sw.sensor.Ideal(), one_of(SENSORS)]) for field in sw.Sensors.fields}
     control, load, thermal = one_of(controls(scale)), one_of(LOADS), one_of([sw.thermal.Isothermal(), HEATING])
-    counts = any(isinstance(sensor, sw.sensor.Encoder | sw.sensor.Quantised) for sensor in sensors.values())
+    counts = any(
+        isinstance(sensor, sw.sensor.Encoder | sw.sensor.SineCosineEncoder | sw.sensor.Quantised) for sensor in sensors.values()
+    )
     if (counts or getattr(motor, "inductance", 1.0) == 0.0) and not isinstance(control, sw.control.Sampled):
         # At the edge of a step a law that acts all the time jumps without end; and none acts on a current it sets at once.
         control = sw.control.Sampled(law=control, period=1e-3)

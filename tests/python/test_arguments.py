@@ -228,7 +228,7 @@ def test_every_function_that_runs_a_drive_wants_a_scenario_as_command(command: A
         lambda: sw.simulate(DRIVE, command),
         lambda: sw.simulate_adaptively(DRIVE, command),
         lambda: sw.simulate_many(DRIVE, command, MEMBERS),
-        lambda: sw.simulate_to(tmp_path / "runs", DRIVE, command, MEMBERS),
+        lambda: sw.simulation.simulate_to(tmp_path / "runs", DRIVE, command, MEMBERS),
         lambda: sw.analysis.derivatives(DRIVE, command, ["load.inertia"]),
     ]
     for call in calls:

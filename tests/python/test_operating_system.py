@@ -58,7 +58,7 @@ for _ in range(2):
         except BlockingIOError as error:
             claims.append(str(error))
 
-sw.simulate_to("ensemble", drive, sw.scenario.sine(0.1, 2.0, 0.1), {"motor.resistance": [1.0, 1.1]}, 1e-4)
+sw.simulation.simulate_to("ensemble", drive, sw.scenario.sine(0.1, 2.0, 0.1), {"motor.resistance": [1.0, 1.1]}, 1e-4)
 make("plan.toml", "set", runner="slurm", workers=1).unlink()
 made = runners.work("set", parent=1)
 

@@ -118,7 +118,7 @@ def tuned() -> Iterator[Any]:
     yield from sw.analysis.positioning_error("csg-20-100", load=20.0)
     yield sw.tuning.lost_motion(sw.rig.printed_gear(0), swing=36.0)
     yield sw.tuning.positioning_path([0.1, 0.2], 0.01, speed=0.5, acceleration=1.0)
-    yield sw.output_torque("csg-20-100", -100.0 * np.linspace(0.0, 1e-3, 50), np.zeros(50))
+    yield sw.analysis.output_torque("csg-20-100", -100.0 * np.linspace(0.0, 1e-3, 50), np.zeros(50))
     plan = sw.tuning.plan_pulses("position-drive", 0.005)
     yield from (
         plan,
@@ -138,7 +138,7 @@ def of_orders() -> Iterator[Any]:
     turned = run_up()
     yield from (sw.transmission_error(encoders()), sw.orders.ripple(turned, "torque", angle="input_angle", side="input"))
     yield from (sw.orders.order_amplitudes(turned, "torque", [1.0, 2.0]), sw.orders.campbell(turned, "torque"))
-    yield from sw.diagnose.order_lines(turned, "torque", [2.0])
+    yield from (*sw.diagnose.order_lines(turned, "torque", [2.0]), sw.orders.order_tracks(turned, "torque", [2.0]))
     record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02, "order": 2.0}
     yield sw.diagnose.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, **record)
     yield sw.diagnose.MisalignmentEstimate("current", "single", (3e-6, 4e-6), 1e-14 * np.eye(2), 40, 1.1)
@@ -154,6 +154,15 @@ def of_wear() -> Iterator[Any]:
         loops.append(sw.Recording({"twist": reach * way / 2e4, "torque": torque}, units))
     shares = sw.identification.loss_shares(loops, sw.load("hfuc-25-100"))
     yield from (shares, shares["gear, dry"])
+
+
+def of_mesh() -> Iterator[Any]:
+    """Yield tables of finite elements, and the laws of a gear by them."""
+    angle, torque = (each.ravel() for each in np.meshgrid(np.radians(np.arange(0.0, 360.0, 10.0)), [-20.0, 0.0, 20.0]))
+    error = 3e-4 * np.sin(2.0 * angle) / (1.0 + 0.02 * np.abs(torque)) + torque / 3e4
+    table = sw.files.MeshTable(angle, torque, transmission_error=error, mesh_stiffness=4e8 + 1e7 * np.sin(2.0 * angle))
+    yield from (table, sw.orders.mesh_laws(table))
+    yield sw.files.ModeTable(frequency=[1800.0, 2100.0], waves=[0, 0], damping=[0.01, 0.01], mass=[0.5, 0.8])
 
 
 def of_rig() -> Iterator[Any]:
@@ -179,7 +188,7 @@ def of_rig() -> Iterator[Any]:
 @cache
 def results() -> Mapping[str, Any]:
     """Return a result of each type, by the name of the type."""
-    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_wear, of_rig) for each in kind())
+    everything = (each for kind in (fitted, simulated, tuned, of_orders, of_wear, of_mesh, of_rig) for each in kind())
     return {type(each).__name__: each for each in everything}
 
 

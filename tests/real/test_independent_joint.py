@@ -73,7 +73,7 @@ def test_the_identified_gear_measures_the_torque_of_the_output(folder: Path, tmp
     printed = subprocess.run([tmp_path / "joint", "amplitude=.7", "end=12"], check=True, capture_output=True, text=True).stdout
     time, _, _, motor, _, link, _, torque, _ = np.loadtxt(printed.splitlines()).T
     zero = independent_joint.ENCODER_ZERO
-    found = sw.output_torque(folder / "found" / "gear.toml", motor + zero, link - zero / 80.0, time=time)
+    found = sw.analysis.output_torque(folder / "found" / "gear.toml", motor + zero, link - zero / 80.0, time=time)
     settled = time > independent_joint.START
     error = (found.torque - torque)[settled]
     assert np.sqrt(np.mean(error**2)) < MAX_TORQUE_ERROR * np.std(torque[settled])

@@ -29,6 +29,7 @@ TYPICAL = {
     "N/m": (1e6, 1e9),
     "N.s/m": (1e0, 1e3),
     "kg": (1e-3, 1e0),
+    "ball_diameter": (1e-4, 7e-4),  # as many as fit on a circle of the size above
 }
 AROUND_ONE = (10**-1.5, 10**1.5)
 
@@ -89,7 +90,7 @@ def signed(magnitudes: st.SearchStrategy[float]) -> st.SearchStrategy[float]:
 
 def numbers(field: Field) -> st.SearchStrategy[float]:
     """What a number may be: zero too where that is allowed, negative too where nothing forbids it; within its limits."""
-    low, high = TYPICAL.get(field["unit"], AROUND_ONE)
+    low, high = TYPICAL.get(field["name"], TYPICAL.get(field["unit"], AROUND_ONE))
     if field["max"] is not None:
         low, high = min(low, field["max"]), min(high, field["max"])
     if field["min"]:
@@ -131,7 +132,8 @@ def values(field: Field, length: int) -> st.SearchStrategy[Any]:
         case "count":
             return st.integers(int(field["min"]), int(field["max"]))
         case "sequence":
-            return st.lists(numbers(field), min_size=length, max_size=length)
+            element = st.integers(int(field["min"]), int(field["max"])) if field["whole"] else numbers(field)
+            return st.lists(element, min_size=length, max_size=length)
         case _:
             return numbers(field)
 

@@ -62,8 +62,8 @@ struct ModelFeedforward {
         the share of the friction that is compensated. Use less than 1 if the model may have too much friction: compensation
         beyond the true friction drives the joint by itself.
 
-        Valid if the motion is slow against the vibration of load and gear. The model has no damping of the spring, no noise, no
-        bodies within the gear and no variation of the stiffness. Its temperature is constant.
+        Valid if the motion is slow against the vibration of load and gear. The model has no damping and no material of the spring, no
+        noise, no bodies within the gear and no variation of the stiffness. Its temperature is constant.
 
         >>> import strainwave as sw
         >>> gear = sw.Gear(friction_input=sw.friction.Coulomb(coulomb=0.05))

@@ -13,10 +13,29 @@ namespace strainwave::coupled_bodies {
 template <class S, class Gear, class Structure>
 inline constexpr int count = Gear::always_rigid ? 0 : 3 + size_of<S, typename Structure::State>;
 
+namespace detail {
+template <class S, int n, class Inner>
+struct NumbersWith {
+    using type = Array<S, (n > 0 ? n : 1)>;
+};
+template <class S, int n, int capacity>
+struct NumbersWith<S, n, Counted<S, capacity>> {
+    using type = Counted<S, n>;
+};
+}  // namespace detail
+
+/// The numbers: as many as the structure's law has, if that is chosen at run time.
+template <class S, class Gear, class Structure>
+using Numbers = typename detail::NumbersWith<S, count<S, Gear, Structure>, Flat<S, typename Structure::State>>::type;
+
 template <class S, class Drive>
 constexpr typename Drive::Coupled numbers(const typename Drive::Continuous& y) {
-    typename Drive::Coupled z{{y.input_speed, y.transmission_error, y.output_speed}};
     const auto inner = flattened<S>(y.structure);
+    typename Drive::Coupled z;
+    if constexpr (requires { z.count; }) z.count = 3 + inner.size();
+    z[0] = y.input_speed;
+    z[1] = y.transmission_error;
+    z[2] = y.output_speed;
     for (int i = 0; i < inner.size(); ++i) z[3 + i] = inner[i];
     return z;
 }
@@ -43,7 +62,7 @@ constexpr typename Drive::Coupled rate(const Drive& drive, const Array<S, 2>& mo
     typename Drive::Continuous y{};
     y.structure = initial_state(drive.gear.structure);
     set_numbers<S, Drive>(y, z);
-    const auto even = drive.gear.even_reaction(y.structure, drive.gear_shafts(typename Drive::State{}, y));
+    const auto even = drive.gear.even_reaction(y.structure, drive.gear_shafts(typename Drive::State{}, y, typename Drive::Input{}));
     typename Drive::Continuous rate{};
     rate.input_speed = -moves[0] * even.input_torque / drive.input_inertia();
     rate.transmission_error = y.input_speed * drive.gear.kinematics.inverse_ratio() - y.output_speed;

@@ -112,7 +112,8 @@ constexpr S max_rate(const Drive& drive, const S& twist, const S& temperature) {
     const S decay = max(detail::damping<S>(drive) + gear.structure.uneven_decay(bodies, random), detail::current_damping<S>(drive));
     if (gear.structure.rigid()) return max(max(detail::of_two_masses<S>(drive, stiffness, random.slope), decay / S(2.5)), inner);
     const auto x = drive.rest();
-    const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous), drive.geometry(x, x.continuous));
+    const S softer = S(1.0) + stiffness * gear.compliance(drive.gear_shafts(x, x.continuous, temperature),
+                                                          drive.geometry(x, x.continuous, typename Drive::Input{}));
     const S uneven = gear.structure.uneven_frequency(bodies, gear.unevenness(twist, detail::temperature<S>(drive, temperature)));
     bodies.inverse_ratio = along(bodies.inverse_ratio, abs(bodies.inverse_ratio) + random.slope);
     const S of_bodies = max(gear.structure.natural_frequency(bodies), gear.structure.decay(bodies)) / S(1.25);

@@ -6,7 +6,7 @@ namespace strainwave {
 
 /// Continuous part of the state of a drive. The transmission error theta_in / i - theta_out replaces the output angle.
 template <class S, class MotorState, class ControlState, class SensorsState, class FrictionInputState, class FrictionMeshState,
-          class FrictionOutputState, class StructureState, class ThermalState, class MeterState>
+          class FrictionOutputState, class StructureState, class MaterialState, class ThermalState, class MeterState>
 struct Continuous {
     MotorState motor{};
     ControlState control{};
@@ -19,6 +19,7 @@ struct Continuous {
     FrictionMeshState friction_mesh{};
     FrictionOutputState friction_output{};
     StructureState structure{};
+    MaterialState material{};
     ThermalState thermal{};
     MeterState meter{};
 
@@ -35,6 +36,7 @@ struct Continuous {
         visit(SW_PART(m, friction_mesh, "State of the friction of the mesh"));
         visit(SW_PART(m, friction_output, "State of the friction at the output"));
         visit(SW_PART(m, structure, "State of the bodies within the gear"));
+        visit(SW_PART(m, material, "Torques of the material that relax"));
         visit(SW_PART(m, thermal, "Temperatures"));
         visit(SW_PART(m, meter, "Energies measured"));
     }

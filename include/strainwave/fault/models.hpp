@@ -14,6 +14,7 @@
 #include <strainwave/fault/sensor_bias.hpp>
 #include <strainwave/fault/tooth_wear.hpp>
 #include <strainwave/fault/wave_generator_bearing.hpp>
+#include <strainwave/fault/winding_set_loss.hpp>
 #include <strainwave/list.hpp>
 
 /// The closed list of faults: one more is its header, and here its include and its name.
@@ -21,6 +22,6 @@ namespace strainwave::fault {
 
 using Models =
     List<Misalignment, ToothWear, FlexsplineCrack, WaveGeneratorBearing, LubricationLoss, PreloadLoss, LinkagePlay, EncoderOffset,
-         EncoderEccentricity, SensorBias, PhaseResistance, OpenPhase, MagnetLoss, Cogging, InverterDeadTime>;
+         EncoderEccentricity, SensorBias, PhaseResistance, OpenPhase, WindingSetLoss, MagnetLoss, Cogging, InverterDeadTime>;
 
 }  // namespace strainwave::fault

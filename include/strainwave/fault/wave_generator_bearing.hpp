@@ -1,4 +1,5 @@
 #pragma once
+#include <strainwave/ball_bearing.hpp>
 #include <strainwave/fault/fault.hpp>
 
 namespace strainwave::fault {
@@ -65,21 +66,16 @@ struct WaveGeneratorBearing {
         visit(SW_FIELD(m, waves, "1", "Waves n: the order and its multiples", 1, 8));
     }
 
-    constexpr const char* problem() const {
-        return all(ball_diameter <= pitch_diameter * sin(S(pi) / S(balls)))
-                   ? nullptr
-                   : "the balls must fit on their circle: ball_diameter must not exceed pitch_diameter sin(pi / balls)";
-    }
+    constexpr const char* problem() const { return geometry(S(0.0)).fits() ? nullptr : BallBearingGeometry<S>::too_large; }
     constexpr const char* missing(const Facts<S>& facts) const { return facts.has_teeth() ? nullptr : needs_teeth; }
 
     /// Order of the damaged element, over the input.
     constexpr S order(const Facts<S>& facts) const {
         const S outer_speed = facts.fixed == kinematics::Fixed::circular_spline ? S(1.0) / facts.ratio : S(0.0);
-        const S share = ball_diameter / pitch_diameter * cos(contact_angle), passing = abs(S(1.0) - outer_speed);
-        if (element == Element::outer_ring) return S(0.5) * S(balls) * (S(1.0) - share) * passing;
-        if (element == Element::inner_ring) return S(0.5) * S(balls) * (S(1.0) + share) * passing;
-        if (element == Element::ball) return S(0.5) * pitch_diameter / ball_diameter * (S(1.0) - share * share) * passing;
-        return S(0.5) * (S(1.0) - share + outer_speed * (S(1.0) + share));
+        const BallBearingGeometry<S> bearing = geometry(outer_speed);
+        if (element == Element::outer_ring) return bearing.outer_ring();
+        if (element == Element::inner_ring) return bearing.inner_ring();
+        return element == Element::ball ? bearing.ball() : bearing.cage();
     }
 
     template <class Visit>
@@ -89,6 +85,9 @@ struct WaveGeneratorBearing {
     }
 
 private:
+    constexpr BallBearingGeometry<S> geometry(const S& outer_speed) const {
+        return {balls, ball_diameter, pitch_diameter, contact_angle, outer_speed};
+    }
     template <class Visit>
     constexpr void add_waves(const Facts<S>& facts, const char* place, const char* law, const S& depth, Visit&& visit) const {
         if (!any(depth > S(0.0))) return;

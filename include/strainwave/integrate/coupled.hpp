@@ -8,33 +8,34 @@ namespace strainwave::integrate {
 /// Coefficients of Krogstad's method (2005, eq. (51)) for a block of numbers that obey y' = A y + n(y, rest) over a step: A, and
 /// what its functions phi_1, phi_2, phi_3 of half the step and of all of it weigh rates with. Written for the changes of n since
 /// the start of the step, so that A y + n, the rate, is all that the first stage needs.
-template <class S, int n>
+template <class Numbers>
 class Coupling {
-    Square<S, n> linear, half_first, half_second;
-    PhiFunctions<S, n> whole;
+    using S = ScalarOf<Numbers>;
+
+    Square<Numbers> linear, half_first, half_second;
+    PhiFunctions<Numbers> whole;
     S h;
 
 public:
     /// Coefficients of A, over a step of `dt`.
-    constexpr void set(const Square<S, n>& a, const S& dt) {
+    constexpr void set(const Square<Numbers>& a, const S& dt) {
         linear = a;
         h = dt;
         const S half = S(0.5) * dt;
         auto &z = half_second, &room = half_first;
-        for (int j = 0; j < n; ++j)
-            for (int i = 0; i < n; ++i) z[j][i] = half * a[j][i];
+        size_like(a, z);
+        for (int j = 0; j < a.size(); ++j)
+            for (int i = 0; i < a.size(); ++i) z[j][i] = half * a[j][i];
         whole.set(z, room);
         half_first = whole.first;
         half_second = whole.second;
         whole.double_integrals(dt == dt);  // everywhere
     }
 
-    using Numbers = Array<S, n>;
-
     /// Change of n since the start of the step, where the rate was `at_start`, and the numbers are `moved` from there.
     constexpr Numbers change(const Numbers& rate, const Numbers& at_start, const Numbers& moved) const {
         Numbers d = times(linear, moved);
-        for (int i = 0; i < n; ++i) d[i] = (rate[i] - at_start[i]) - d[i];
+        for (int i = 0; i < d.size(); ++i) d[i] = (rate[i] - at_start[i]) - d[i];
         return d;
     }
     // Change of the numbers to the stages in the middle of the step, and to its end.
@@ -47,8 +48,8 @@ public:
         return sum(by_start, moved(S(2.0), whole.second, d3));
     }
     constexpr Numbers to_end(const Numbers& by_start, const Numbers& d2, const Numbers& d3, const Numbers& d4) const {
-        Numbers twice, rest;
-        for (int i = 0; i < n; ++i) {
+        Numbers twice = d2, rest = d2;
+        for (int i = 0; i < d2.size(); ++i) {
             const S both = d2[i] + d3[i];
             twice[i] = S(2.0) * both - d4[i];
             rest[i] = d4[i] - both;
@@ -57,27 +58,26 @@ public:
     }
 
 private:
-    constexpr Numbers moved(const S& share, const Square<S, n>& phi, const Numbers& rate) const {
+    constexpr Numbers moved(const S& share, const Square<Numbers>& phi, const Numbers& rate) const {
         Numbers y = times(phi, rate);
         const S by = share * h;
-        for (int i = 0; i < n; ++i) y[i] = by * y[i];
+        for (int i = 0; i < y.size(); ++i) y[i] = by * y[i];
         return y;
     }
     static constexpr Numbers sum(const Numbers& a, const Numbers& b) {
-        Numbers c;
-        for (int i = 0; i < n; ++i) c[i] = a[i] + b[i];
+        Numbers c = a;
+        for (int i = 0; i < c.size(); ++i) c[i] = a[i] + b[i];
         return c;
     }
 };
 
 /// One step without events, of fourth order: the coupled block by Krogstad's method, however stiff it is, all else as in
 /// `exponential_step`. Both have the weights of the classical Runge-Kutta scheme where nothing is stiff.
-template <class S, class System, int n>
+template <class S, class System, class Numbers>
 constexpr typename System::State coupled_step(const System& system, const typename System::Evaluation& from,
                                               const Interval<typename System::Input>& u, const S& dt,
-                                              const Coupling<S, n>& coupling) {
+                                              const Coupling<Numbers>& coupling) {
     using Continuous = typename System::Continuous;
-    using Numbers = Array<S, n>;
     auto x = from.state;
     const Continuous& y1 = from.state.continuous;
     const auto& now = from.derivatives;
@@ -85,7 +85,7 @@ constexpr typename System::State coupled_step(const System& system, const typena
     const Numbers start = system.coupled(y1), rate = system.coupled(now.rate);
     const auto stage = [&](Continuous y, const Numbers& moved) {
         Numbers numbers = start;
-        for (int i = 0; i < n; ++i) numbers[i] = numbers[i] + moved[i];
+        for (int i = 0; i < numbers.size(); ++i) numbers[i] = numbers[i] + moved[i];
         system.set_coupled(y, numbers);
         return system::clamped(system, y, now);
     };
@@ -110,14 +110,16 @@ constexpr typename System::State coupled_step(const System& system, const typena
     return x;
 }
 
-/// The matrix of a coupled block.
-template <class S, class System, class Mode>
-constexpr Square<S, system::coupled_count<System>> coupled_matrix(const System& system, const Mode& mode) {
-    constexpr int n = system::coupled_count<System>;
-    Square<S, n> a;
-    for (int j = 0; j < n; ++j) {
-        Array<S, n> unit{};
-        unit[j] = S(1.0);
+/// The matrix of a coupled block at a state.
+template <class System>
+constexpr auto coupled_matrix(const System& system, const typename System::State& x) {
+    const auto mode = system.coupled_mode(x);
+    using Numbers = decltype(system.coupled(x.continuous));
+    const Numbers zeros = zeros_like(system.coupled(x.continuous));
+    Square<Numbers> a;
+    for (int j = 0; j < zeros.size(); ++j) {
+        Numbers unit = zeros;
+        unit[j] = ScalarOf<Numbers>(1.0);
         a[j] = system.coupled_rate(mode, unit);
     }
     return a;
@@ -133,7 +135,7 @@ class Steps {
     using Evaluation = typename System::Evaluation;
     using Mode = decltype(System{}.coupled_mode(State{}));
 
-    Coupling<S, n> coupling;
+    Coupling<decltype(System{}.coupled(State{}.continuous))> coupling;
     Mode mode;
     S length;
     bool known = false;
@@ -169,7 +171,7 @@ private:
             for (int i = 0; i < asked.size(); ++i) same = same & (mode[i] == asked[i]);
             if (all(same) && !is_differentiated(taken - length)) return;
         }
-        coupling.set(coupled_matrix<S>(system, asked), taken);
+        coupling.set(coupled_matrix(system, x), taken);
         mode = asked;
         length = taken;
         known = true;

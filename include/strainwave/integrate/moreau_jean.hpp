@@ -29,9 +29,9 @@ template <class S, class System>
 constexpr typename System::State moreau_jean_parts(const System& system, const typename System::Evaluation& from,
                                                    const Interval<typename System::Input>& u, const S& dt) {
     constexpr double max_parts = 1e4;
-    auto block = coupled_matrix<S>(system, system.coupled_mode(from.state));
-    for (auto& column : block.item)
-        for (S& x : column.item) x = dt * x;
+    auto block = coupled_matrix(system, from.state);
+    for (int j = 0; j < block.size(); ++j)
+        for (int i = 0; i < block.size(); ++i) block[j][i] = dt * block[j][i];
     balance(block);
     const S parts = clip(rint(S(2.0) * value_only(largest_column(block)) + S(0.5)), S(1.0), S(max_parts)), share = S(1.0) / parts;
     auto at = from;

@@ -33,6 +33,31 @@ constexpr Relief<S> relief(const Law& law, const S& torque) {
         return {};
 }
 
+/// True if an error depends on the temperature of the gear.
+template <class Law>
+constexpr bool follows_temperature(const Law& law) {
+    if constexpr (requires { law.follows_temperature(); })
+        return law.follows_temperature();
+    else
+        return false;
+}
+/// The error of a gear at a temperature [K].
+template <class S, class Law>
+constexpr Error<S> warmed(const Law& law, const Angle<S>& angle, const S& temperature) {
+    if constexpr (requires { law.warmed(angle, temperature); })
+        return law.warmed(angle, temperature);
+    else
+        return law.at(angle);
+}
+/// Rise of an error per kelvin [rad/K] at a constant angle.
+template <class S, class Law>
+constexpr S per_kelvin(const Law& law, const Angle<S>& angle) {
+    if constexpr (requires { law.per_kelvin(angle); })
+        return law.per_kelvin(angle);
+    else
+        return S(0.0);
+}
+
 /// Turns its sign where the slope of an error jumps; 1 of an error whose slope never does.
 template <class S, class Law>
 constexpr S side(const Law& law, const Angle<S>& angle) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/kinematic_error/fourier.hpp>
+#include <strainwave/kinematic_error/micro_slip.hpp>
 #include <strainwave/kinematic_error/misalignment.hpp>
 #include <strainwave/kinematic_error/scaled.hpp>
 #include <strainwave/kinematic_error/stochastic.hpp>
@@ -13,6 +14,6 @@ namespace strainwave::kinematic_error {
 using Pure = List<Fourier, Misalignment, ToothErrors>;
 using Unloaded = Extended<Pure, TemperatureDependent>;
 using Models = Extended<Unloaded, Scaled>;
-using Noises = List<Stochastic>;
+using Noises = List<Stochastic, MicroSlip>;
 
 }  // namespace strainwave::kinematic_error

@@ -57,6 +57,12 @@ struct Scaled {
             const Error<S> full = law.at(angle);
             return {scale * full.value, scale * full.slope};
         }
+        constexpr bool follows_temperature() const { return kinematic_error::follows_temperature(law); }
+        constexpr Error<S> warmed(const Angle<S>& angle, const S& temperature) const {
+            const Error<S> full = kinematic_error::warmed<S>(law, angle, temperature);
+            return {scale * full.value, scale * full.slope};
+        }
+        constexpr S per_kelvin(const Angle<S>& angle) const { return scale * kinematic_error::per_kelvin<S>(law, angle); }
     };
 
     constexpr auto compile() const {
@@ -68,6 +74,9 @@ struct Scaled {
     constexpr Relief<S> relief(const S& torque) const { return compile().relief(torque); }
     constexpr S side(const Angle<S>& angle) const { return compile().side(angle); }
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+    constexpr bool follows_temperature() const { return kinematic_error::follows_temperature(law); }
+    constexpr Error<S> warmed(const Angle<S>& angle, const S& temperature) const { return compile().warmed(angle, temperature); }
+    constexpr S per_kelvin(const Angle<S>& angle) const { return compile().per_kelvin(angle); }
 };
 
 }  // namespace strainwave::kinematic_error

@@ -36,7 +36,8 @@ struct Stochastic {
         default band. Every scalar type draws the same orders and phases.
 
         The review states that the stochastic part falls with load, rises with speed and falls with the insertion depth,
-        without equations: the forms are assumed, and all three are off by default. The stochastic part of the review also
+        without equations: the forms are assumed, and all three are off by default. MicroSlip has the mechanism that the review
+        names, in which speed and load act through the slip of a contact. The stochastic part of the review also
         contains the deterministic resonance of the elastic gear, which is not part of this law. The spectrum is flat,
         the values are close to Gaussian. ``slope`` is the derivative by theta at constant a. Over few turns the root mean
         square differs from a: a record must span several times the inverse of a cell's width, in turns.
@@ -81,12 +82,14 @@ struct Stochastic {
             const S rise = min(speed_sensitivity * abs(speed), S(1e30)), fall = min(load_sensitivity * abs(torque), S(1e30));
             return amplitude * (S(1.0) + rise) / (S(1.0) + fall);
         }
-        /// Relative growth rate of the amplitude [1/s], where the torque changes at `torque_rate` [N.m/s], the speed at
+        /// Rate of the error [rad/s] at a constant angle, where the torque changes at `torque_rate` [N.m/s], the speed at
         /// `acceleration` [rad/s2].
-        constexpr S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
+        constexpr S drift(const Angle<S>& angle, const S& torque, const S& torque_rate, const S& speed,
+                          const S& acceleration) const {
             const S rise = speed_sensitivity * abs(speed), fall = load_sensitivity * abs(torque);
-            return speed_sensitivity * sign(speed) * acceleration / (S(1.0) + rise) -
-                   load_sensitivity * sign(torque) * torque_rate / (S(1.0) + fall);
+            const S growth = speed_sensitivity * sign(speed) * acceleration / (S(1.0) + rise) -
+                             load_sensitivity * sign(torque) * torque_rate / (S(1.0) + fall);
+            return at(angle, torque, speed).value * growth;
         }
 
         /// Four standard deviations of a nearly Gaussian value: one place in 16000 exceeds them.
@@ -116,8 +119,8 @@ struct Stochastic {
 
     constexpr S rms(const S& torque, const S& speed) const { return scaled().rms(torque, speed); }
 
-    constexpr S growth(const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
-        return scaled().growth(torque, torque_rate, speed, acceleration);
+    constexpr S drift(const Angle<S>& angle, const S& torque, const S& torque_rate, const S& speed, const S& acceleration) const {
+        return compile().drift(angle, torque, torque_rate, speed, acceleration);
     }
 
     constexpr MaxChange max_change() const { return compile().max_change(); }

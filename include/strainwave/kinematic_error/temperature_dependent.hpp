@@ -32,7 +32,9 @@ struct TemperatureDependent {
         phase. The sine and the cosine part are exactly linear in T, as of sources of error that add up, some of which grow with
         the expansion of the parts. Valid over the range of temperatures at which the error was measured.
 
-        ``temperature`` is a number of the gear: the temperature of a run, which friction follows, does not change it. Set both.
+        In a run, T is the temperature of the gear, which a thermal model changes. As the error changes at a standstill, it moves
+        the shafts against the spring, and does the work that an EnergyMeter has as that of the kinematic error. ``temperature`` is
+        T where no run gives one: of the law by itself, and of the model in a controller.
         No catalogue gives the rates; ``sw.orders.error_over_temperature`` fits them to records at several temperatures.
 
         >>> from strainwave.kinematic_error import Fourier, TemperatureDependent
@@ -46,7 +48,7 @@ struct TemperatureDependent {
         visit(SW_FIELD(m, order, "1", "Order B_h of a change: periods per input revolution", 0));
         visit(SW_FIELD(m, change, "rad/K", "Amplitude a_h of the change of the error per kelvin", 0));
         visit(SW_FIELD(m, phase, "rad", "Phase psi_h of that change"));
-        visit(SW_FIELD(m, temperature, "K", "Temperature T of the gear", smallest));
+        visit(SW_FIELD(m, temperature, "K", "Temperature T of the law by itself and in a controller; a run has its own", smallest));
         visit(SW_FIELD(m, reference_temperature, "K", "Temperature T_0 at which the error is that of the law", smallest));
     }
 
@@ -59,37 +61,38 @@ struct TemperatureDependent {
     template <class Inner>
     struct Compiled {
         Inner at_reference;
-        Harmonics<S, capacity> difference;
+        Harmonics<S, capacity> change;
+        S temperature, reference_temperature;
+        bool changes;
 
         constexpr S side(const Angle<S>& angle) const { return kinematic_error::side<S>(at_reference, angle); }
-        constexpr Error<S> at(const Angle<S>& angle) const {
+        constexpr bool follows_temperature() const { return changes; }
+        constexpr Error<S> at(const Angle<S>& angle) const { return warmed(angle, temperature); }
+        constexpr Error<S> warmed(const Angle<S>& angle, const S& warm) const {
             const Error<S> base = at_reference.at(angle);
-            const auto [value, slope] = difference.at(angle);
-            return {base.value + value, base.slope + slope};
+            const auto [value, slope] = change.at(angle);
+            const S warmer = warm - reference_temperature;
+            return {base.value + warmer * value, base.slope + warmer * slope};
         }
+        constexpr S per_kelvin(const Angle<S>& angle) const { return change.at(angle).value; }
     };
 
     constexpr auto compile() const {
-        return Compiled<decltype(compiled(law))>{compiled(law), Harmonics<S, capacity>::of(order, difference(), phase)};
+        return Compiled<decltype(compiled(law))>{compiled(law), Harmonics<S, capacity>::of(order, change, phase), temperature,
+                                                 reference_temperature, follows_temperature()};
     }
 
     constexpr S side(const Angle<S>& angle) const { return compile().side(angle); }
+    constexpr bool follows_temperature() const { return order.count > 0; }
     constexpr Error<S> at(const Angle<S>& angle) const { return compile().at(angle); }
+    constexpr Error<S> warmed(const Angle<S>& angle, const S& warm) const { return compile().warmed(angle, warm); }
+    constexpr S per_kelvin(const Angle<S>& angle) const { return compile().per_kelvin(angle); }
 
-    /// Upper bound of the magnitude of the slope [rad/rad].
+    /// Upper bound of the magnitude of the slope [rad/rad], at its own temperature.
     constexpr S steepest() const {
         S sum = kinematic_error::steepest<S>(law);
-        const Sequence<S, capacity> amplitude = difference();
-        for (int h = 0; h < order.count; ++h) sum = sum + abs(order[h] * amplitude[h]);
+        for (int h = 0; h < order.count; ++h) sum = sum + abs((temperature - reference_temperature) * order[h] * change[h]);
         return sum;
-    }
-
-private:
-    /// Amplitudes of what is added to the error of the law [rad].
-    constexpr Sequence<S, capacity> difference() const {
-        Sequence<S, capacity> amplitude = change;
-        for (int h = 0; h < amplitude.count; ++h) amplitude[h] = (temperature - reference_temperature) * change[h];
-        return amplitude;
     }
 };
 

@@ -13,11 +13,11 @@ struct EnergyMeter {
         .. math:: E_{supplied} = \sum_{places} E_{lost} + E_{load} + \Delta E_{stored}
 
         Each energy is the integral of its power since the start of the run. E_lost are the losses of the motor, of friction at
-        the three places, of damping, and of hysteresis. E_stored are the energies of both shafts, of the spring and of the
-        motor, which need not be 0 at the start. Hysteresis and bristles of friction store a part of the energy that they take,
+        the three places, of damping, the relaxation of a material included, and of hysteresis. E_stored are the energies of both
+        shafts, of the spring with its material, and of the motor, which need not be 0 at the start. Hysteresis and bristles of friction store a part of the energy that they take,
         and give it back later; over a cycle all of it is lost. A spring that softens as it warms up turns some of its energy
-        to heat. A random kinematic error whose amplitude follows load or speed does work on the shafts, of either sign, as
-        that amplitude changes. The energy of a brake counts to the load.
+        to heat. A random kinematic error whose amplitude follows load or speed, and an error over the temperature, do work on
+        the shafts, of either sign, as they change. The energy of a brake counts to the load.
 
         The balance is as exact as the steps, which integrate the powers with the motion. The work of a jump of an input takes
         no time and is not part of any power. This concerns jumps of the angle of a held output shaft and of the temperature of
@@ -44,10 +44,10 @@ struct EnergyMeter {
             visit(SW_FIELD(m, friction_input, "J", "Energy that friction at the input has taken"));
             visit(SW_FIELD(m, friction_mesh, "J", "Energy that friction of the mesh has taken"));
             visit(SW_FIELD(m, friction_output, "J", "Energy that friction at the output has taken"));
-            visit(SW_FIELD(m, damping, "J", "Energy that the damping of the gear has taken"));
+            visit(SW_FIELD(m, damping, "J", "Energy that damping and relaxation of the gear have taken"));
             visit(SW_FIELD(m, hysteresis, "J", "Energy that the hysteresis has taken, and not given back"));
             visit(SW_FIELD(m, softening, "J", "Elastic energy that has turned to heat as the gear warmed up"));
-            visit(SW_FIELD(m, kinematic_noise, "J", "Energy that a random kinematic error has taken as its amplitude changed"));
+            visit(SW_FIELD(m, kinematic_noise, "J", "Energy that the kinematic error has taken as its amplitude changed"));
             visit(SW_FIELD(m, load, "J", "Energy that the load has taken"));
         }
     };

@@ -22,10 +22,10 @@ struct Powers {
         visit(SW_FIELD(m, friction_input, "W", "Power that friction at the input takes"));
         visit(SW_FIELD(m, friction_mesh, "W", "Power that friction of the mesh takes"));
         visit(SW_FIELD(m, friction_output, "W", "Power that friction at the output takes"));
-        visit(SW_FIELD(m, damping, "W", "Power that the damping of the gear takes"));
+        visit(SW_FIELD(m, damping, "W", "Power that damping and relaxation of the gear take"));
         visit(SW_FIELD(m, hysteresis, "W", "Power that the hysteresis takes; it gives part of it back"));
         visit(SW_FIELD(m, softening, "W", "Elastic power that turns to heat as the gear warms up"));
-        visit(SW_FIELD(m, kinematic_noise, "W", "Power that a random kinematic error takes as its amplitude changes"));
+        visit(SW_FIELD(m, kinematic_noise, "W", "Power that the kinematic error takes as its amplitude changes"));
         visit(SW_FIELD(m, load, "W", "Power that the load takes"));
     }
 };

@@ -2,6 +2,7 @@
 #include <strainwave/motor/cogging.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/motor/winding.hpp>
+#include <strainwave/motor/winding_sets.hpp>
 
 namespace strainwave::motor {
 
@@ -16,6 +17,8 @@ struct BrushlessDC {
     S resistance_rise{0.0};
     S cogging_torque{0.0};
     S cogging_order{24.0};
+    S open_share{0.0};
+    S shorted_share{0.0};
 
     static constexpr auto name = "brushless_dc";
     static constexpr auto actuation = "voltage";
@@ -33,6 +36,12 @@ struct BrushlessDC {
         whose integrals stop at this limit. R rises with the temperature of the winding by resistance_rise per kelvin above 20
         degC. If a load turns the motor faster than (U + R I) / K, the voltage of the supply is too small, and the current
         exceeds I.
+
+        Of a redundant winding, of equal sets in parallel that one amplifier each feeds with the same voltage, the numbers are
+        those of all sets together, and i is the sum of their currents. With the shares open_share and shorted_share of the
+        sets lost, the rest has R / d, L / d and the limit d I, d = 1 - open_share - shorted_share, and the same K. The shorted
+        sets brake with the torque shorted_share K^2 omega / R, which becomes heat. This leaves out their inductance: it is valid
+        at electric frequencies below R / L, beyond which the torque of a shorted set falls, see PMSM.
 
         tau_c = cogging_torque, n = cogging_order, theta = the input angle; the energy of cogging is stored, not lost. Leaves
         out commutation and its ripple: see PMSM. Also leaves out that an amplifier can use all of its voltage at first: here
@@ -53,7 +62,11 @@ struct BrushlessDC {
         visit(SW_FIELD(m, resistance_rise, "1/K", "Relative rise of the resistance per kelvin", 0));
         visit(SW_OPTIONAL(m, cogging_torque, "N.m", "Amplitude tau_c of the cogging", 0));
         visit(SW_OPTIONAL(m, cogging_order, "1", "Periods n of the cogging per input revolution", 1, 1e4, true));
+        visit(SW_OPTIONAL(m, open_share, "1", "Share of the winding sets whose terminals are open", 0, 0.999));
+        visit(SW_OPTIONAL(m, shorted_share, "1", "Share of the winding sets whose terminals are short-circuited", 0, 0.999));
     }
+
+    constexpr const char* problem() const { return WindingSets<S>::problem(open_share, shorted_share); }
 
     struct State {
         S current{0.0};
@@ -75,7 +88,7 @@ struct BrushlessDC {
     };
 
     constexpr S torque(const State& x, const S&, const Rotor<S>& rotor) const {
-        return cogging().added_to(torque_constant * x.current, rotor.angle);
+        return cogging().added_to(sets().braked(torque_constant * x.current, [&] { return braking(rotor); }), rotor.angle);
     }
     constexpr S current(const State& x, const S&, const Rotor<S>&) const { return x.current; }
     constexpr Limits<S> limits(const State&, const Rotor<S>& rotor) const {
@@ -87,18 +100,28 @@ struct BrushlessDC {
     }
     constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S i = x.current;
-        return {limits(x, rotor).limited(asked) * i, winding().resistance_at(rotor.temperature) * i * i,
-                cogging().stored_with(S(0.5) * inductance * i * i, rotor.angle)};
+        const S lost = sets().braked(driving_resistance(rotor) * i * i, [&] { return -braking(rotor) * rotor.speed; });
+        return {limits(x, rotor).limited(asked) * i, lost,
+                cogging().stored_with(S(0.5) * driving_inductance() * i * i, rotor.angle)};
     }
     constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
-        const S voltage = limits(x, rotor).limited(asked), resistance_now = winding().resistance_at(rotor.temperature);
-        return {(voltage - resistance_now * x.current - torque_constant * rotor.speed) / inductance};
+        const S voltage = limits(x, rotor).limited(asked), resistance_now = driving_resistance(rotor);
+        return {(voltage - resistance_now * x.current - torque_constant * rotor.speed) / driving_inductance()};
     }
     constexpr State relaxation_rate() const { return {resistance / inductance}; }
 
 private:
     constexpr CoggingTorque<S> cogging() const { return CoggingTorque<S>::of(cogging_torque, cogging_order); }
     constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
+    constexpr WindingSets<S> sets() const { return WindingSets<S>::of(open_share, shorted_share); }
+    constexpr S driving_resistance(const Rotor<S>& rotor) const {
+        return sets().impedance(winding().resistance_at(rotor.temperature));
+    }
+    constexpr S driving_inductance() const { return sets().impedance(inductance); }
+    /// Torque [N.m] of all sets, if all were short-circuited.
+    constexpr S braking(const Rotor<S>& rotor) const {
+        return -torque_constant * torque_constant * rotor.speed * winding().conductance_at(rotor.temperature);
+    }
 };
 
 }  // namespace strainwave::motor

@@ -2,6 +2,7 @@
 #include <strainwave/motor/phases.hpp>
 #include <strainwave/motor/rotor.hpp>
 #include <strainwave/motor/winding.hpp>
+#include <strainwave/motor/winding_sets.hpp>
 
 namespace strainwave::motor {
 
@@ -23,13 +24,16 @@ struct PMSM {
     S phase_resistance_excess{0.0};
     S dead_time_voltage{0.0};
     S dead_time_current{0.1};
+    S open_share{0.0};
+    S shorted_share{0.0};
 
     static constexpr auto name = "pmsm";
     static constexpr auto actuation = "voltage";
     static constexpr auto source =
         "PillayKrishnan1989, eqs. (1)-(7), in amplitudes; dead time: JeongPark1991; the uneven phase is the same equations with "
         "three "
-        "resistances; limits of the inverter and their order of precedence are ours";
+        "resistances, a short-circuited winding set at steady speed those without voltage; limits of the inverter and their order "
+        "of precedence are ours";
     static constexpr auto doc = R"(
         Permanent-magnet synchronous motor in the frame of its rotor, with a field-oriented inverter.
 
@@ -79,6 +83,19 @@ struct PMSM {
         limit it, so that its limits include v_q. i_d is not controlled by a measurement, and is no longer exactly i_d0. Fixed
         steps must follow the decay by 2/3 DR / L and by V / (i_c L), L being the smaller of L_d and L_q.
 
+        A redundant winding has several equal sets of three phases, one inverter each. The numbers of the motor are those of all
+        sets in parallel: currents are the sums of those of the sets, R, L_d and L_q those of a set over the number of sets. With
+        the shares open_share and shorted_share of the sets lost, the rest has R / d, L_d / d, L_q / d and the limit d I of the
+        current, with d = 1 - open_share - shorted_share; i_d0 and i_c are multiplied by d, too. The torque per current stays.
+        The shorted sets brake, beta = shorted_share, with the torque of their steady currents,
+
+        .. math:: \tau_b = \tfrac{3}{2} p \beta\,(\psi + (L_d - L_q) j_d)\, j_q, \qquad
+                  j_q = \frac{-p \omega \psi R}{R^2 + p^2 \omega^2 L_d L_q}, \qquad j_d = \frac{p \omega L_q}{R} j_q
+
+        which is - 3/2 beta p^2 psi^2 omega / R at low speed, and largest at p omega = R / L. Its power is heat. Leaves out the
+        transient of these currents, which takes the time L / R, and the mutual inductance of the sets: as of sets in slots of
+        their own.
+
         >>> from strainwave.motor import PMSM
         >>> motor = PMSM(flux_linkage=0.02, pole_pairs=7)
         >>> round(1.5 * motor.pole_pairs * motor.flux_linkage, 12)  # torque per current, N.m/A
@@ -102,10 +119,13 @@ struct PMSM {
         visit(SW_OPTIONAL(m, phase_resistance_excess, "Ohm", "Excess resistance DR of one phase", 0));
         visit(SW_OPTIONAL(m, dead_time_voltage, "V", "Voltage V that a phase loses by the dead time of the inverter", 0));
         visit(SW_OPTIONAL(m, dead_time_current, "A", "Phase current i_c below which the voltage of the dead time falls", smallest));
+        visit(SW_OPTIONAL(m, open_share, "1", "Share of the winding sets whose terminals are open", 0, 0.999));
+        visit(SW_OPTIONAL(m, shorted_share, "1", "Share beta of the winding sets whose terminals are short-circuited", 0, 0.999));
     }
 
     constexpr const char* problem() const {
-        return all(abs(direct_current) < current_limit) ? nullptr : "direct_current must lie within current_limit";
+        if (!all(abs(direct_current) < current_limit)) return "direct_current must lie within current_limit";
+        return WindingSets<S>::problem(open_share, shorted_share);
     }
 
     struct State {
@@ -131,18 +151,18 @@ struct PMSM {
     };
 
     constexpr S torque(const State& x, const S&, const Rotor<S>& rotor) const {
-        const S saliency = (direct_inductance - quadrature_inductance) * x.direct_current;
+        const S saliency = sets().impedance(direct_inductance - quadrature_inductance) * x.direct_current;
         const S electric = S(1.5) * pole_pairs * (flux_linkage + saliency) * x.quadrature_current;
-        return electric + cogging_torque * sin(cogging_order * rotor.angle.within);
+        return sets().braked(electric, [&] { return braking(rotor); }) + cogging_torque * sin(cogging_order * rotor.angle.within);
     }
     constexpr S current(const State& x, const S&, const Rotor<S>& rotor) const {
         return x.quadrature_current + current_offset * sin(pole_pairs * rotor.angle.within);
     }
     constexpr Limits<S> limits(const State& x, const Rotor<S>& rotor) const {
         const S direct = direct_voltage(x, rotor), reach = sqrt(max(length() * length() - direct * direct, S(smallest)));
-        const S along = max(abs(x.direct_current), abs(direct_current));  // i_d is on its way from one to the other
-        const S others = sqrt(max(current_limit * current_limit - along * along, S(smallest)));
-        const S most = winding().resistance_at(rotor.temperature) * others;
+        const S along = max(abs(x.direct_current), abs(settled_direct_current()));  // i_d is on its way from one to the other
+        const S largest = sets().current(current_limit), others = sqrt(max(largest * largest - along * along, S(smallest)));
+        const S most = driving_resistance(rotor) * others;
         const S induced = has_faults() ? back_emf(x, rotor) + fault_drop(x, rotor).across : back_emf(x, rotor);
         return Limits<S>{induced - most, induced + most}.within(reach);
     }
@@ -152,34 +172,34 @@ struct PMSM {
     constexpr Power<S> power(const State& x, const S& asked, const Rotor<S>& rotor) const {
         const S i_q = x.quadrature_current, i_d = x.direct_current;
         S supplied = limits(x, rotor).limited(asked) * i_q + direct_voltage(x, rotor) * i_d;
-        S lost = winding().resistance_at(rotor.temperature) * (i_q * i_q + i_d * i_d);
+        S lost = driving_resistance(rotor) * (i_q * i_q + i_d * i_d);
         if (has_faults()) {
             const auto phases = phases_of(x, rotor);
-            const auto kept = phases.dead_time_drop(dead_time_voltage, dead_time_current);
+            const auto kept = phases.dead_time_drop(dead_time_voltage, sets().current(dead_time_current));
             supplied = supplied - (kept.across * i_q + kept.along * i_d);
             lost = lost + S(2.0 / 3.0) * phase_resistance_excess * phases.first * phases.first;
         }
-        const S magnetic = S(0.75) * (quadrature_inductance * i_q * i_q + direct_inductance * i_d * i_d);
+        const S magnetic = S(0.75) * sets().impedance(quadrature_inductance * i_q * i_q + direct_inductance * i_d * i_d);
         const S cogging = cogging_torque / cogging_order * cos(cogging_order * rotor.angle.within);
-        return {S(1.5) * supplied, S(1.5) * lost, magnetic + cogging};
+        return {S(1.5) * supplied, sets().braked(S(1.5) * lost, [&] { return -braking(rotor) * rotor.speed; }), magnetic + cogging};
     }
     constexpr State rate(const State& x, const S& asked, const Rotor<S>& rotor) const {
-        const S resistance_now = winding().resistance_at(rotor.temperature);
+        const S resistance_now = driving_resistance(rotor), speed = pole_pairs * rotor.speed;
         S across = limits(x, rotor).limited(asked) - resistance_now * x.quadrature_current - back_emf(x, rotor);
         S along = direct_voltage(x, rotor) - resistance_now * x.direct_current +
-                  pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+                  speed * sets().impedance(quadrature_inductance) * x.quadrature_current;
         if (has_faults()) {
             const auto drop = fault_drop(x, rotor);
             across = across - drop.across;
             along = along - drop.along;
         }
-        return {across / quadrature_inductance, along / direct_inductance};
+        return {across / sets().impedance(quadrature_inductance), along / sets().impedance(direct_inductance)};
     }
     constexpr State relaxation_rate() const { return {resistance / quadrature_inductance, resistance / direct_inductance}; }
     /// Steps do not take the decay by faults exactly: it turns with the rotor.
     constexpr S fastest() const {
-        const S decay = S(2.0 / 3.0) * phase_resistance_excess + dead_time_voltage / dead_time_current;
-        return S(1.0 / 2.5) * decay / min(direct_inductance, quadrature_inductance);
+        const S decay = S(2.0 / 3.0) * phase_resistance_excess + dead_time_voltage / sets().current(dead_time_current);
+        return S(1.0 / 2.5) * decay / sets().impedance(min(direct_inductance, quadrature_inductance));
     }
 
 private:
@@ -192,17 +212,31 @@ private:
     }
     constexpr RotorVoltage<S> fault_drop(const State& x, const Rotor<S>& rotor) const {
         const auto phases = phases_of(x, rotor);
-        return phases.resistance_drop(phase_resistance_excess) + phases.dead_time_drop(dead_time_voltage, dead_time_current);
+        return phases.resistance_drop(phase_resistance_excess) +
+               phases.dead_time_drop(dead_time_voltage, sets().current(dead_time_current));
+    }
+    constexpr WindingSets<S> sets() const { return WindingSets<S>::of(open_share, shorted_share); }
+    constexpr S driving_resistance(const Rotor<S>& rotor) const {
+        return sets().impedance(winding().resistance_at(rotor.temperature));
+    }
+    constexpr S settled_direct_current() const { return sets().current(direct_current); }
+    /// Torque [N.m] of all sets at a steady speed, if all were short-circuited.
+    constexpr S braking(const Rotor<S>& rotor) const {
+        const S speed = pole_pairs * rotor.speed, resistance_now = winding().resistance_at(rotor.temperature);
+        const S square = resistance_now * resistance_now + speed * speed * direct_inductance * quadrature_inductance;
+        const S across = -speed * flux_linkage * resistance_now / square;
+        const S along = speed * quadrature_inductance / resistance_now * across;
+        return S(1.5) * pole_pairs * (flux_linkage + (direct_inductance - quadrature_inductance) * along) * across;
     }
     constexpr Winding<S> winding() const { return Winding<S>::of(resistance, resistance_rise); }
     /// The longest voltage that the inverter can give, V.
     constexpr S length() const { return supply_voltage * S(0.57735026918962576); }
     constexpr S back_emf(const State& x, const Rotor<S>& rotor) const {
-        return pole_pairs * rotor.speed * (direct_inductance * x.direct_current + flux_linkage);
+        return pole_pairs * rotor.speed * (sets().impedance(direct_inductance) * x.direct_current + flux_linkage);
     }
     constexpr S direct_voltage(const State& x, const Rotor<S>& rotor) const {
-        const S wanted = winding().resistance_at(rotor.temperature) * direct_current -
-                         pole_pairs * rotor.speed * quadrature_inductance * x.quadrature_current;
+        const S wanted = driving_resistance(rotor) * settled_direct_current() -
+                         pole_pairs * rotor.speed * sets().impedance(quadrature_inductance) * x.quadrature_current;
         return clip(wanted, -length(), length());
     }
 };

@@ -8,11 +8,12 @@
 #include <strainwave/sensor/noisy.hpp>
 #include <strainwave/sensor/quantised.hpp>
 #include <strainwave/sensor/second_order.hpp>
+#include <strainwave/sensor/sine_cosine_encoder.hpp>
 
 /// The closed list of sensors: one more is its header, and here its include and its name. The first is the default.
 namespace strainwave::sensor {
 
-using Plain = List<Ideal, Gain, FirstOrder, SecondOrder, Encoder>;
+using Plain = List<Ideal, Gain, FirstOrder, SecondOrder, Encoder, SineCosineEncoder>;
 using Late = Extended<Plain, Delayed>;
 using Loud = Extended<Late, Noisy>;
 using Models = Extended<Loud, Quantised>;

@@ -1,12 +1,14 @@
 #pragma once
 #include <strainwave/compiled.hpp>
+#include <strainwave/ring/rigid.hpp>
 #include <strainwave/structure/structure.hpp>
 #include <strainwave/variation/constant.hpp>
 
 namespace strainwave::structure {
 
-template <class S, class CouplingVariation = variation::Constant<S>, class BearingVariation = CouplingVariation,
-          class MeshVariation = CouplingVariation, class SplineVariation = CouplingVariation>
+template <class S, class Ring = ring::Rigid<S>, class CouplingVariation = variation::Constant<S>,
+          class BearingVariation = CouplingVariation, class MeshVariation = CouplingVariation,
+          class SplineVariation = CouplingVariation>
 struct Staged {
     S pitch_radius{25e-3};
     S pressure_angle{0.3490658503988659};
@@ -21,6 +23,7 @@ struct Staged {
     S radial_mass{0.03};
     S flexspline_inertia{2e-5};
     S circular_spline_inertia{3e-4};
+    Ring ring{};
     CouplingVariation coupling_variation{};
     BearingVariation bearing_variation{};
     MeshVariation mesh_variation{};
@@ -57,6 +60,8 @@ struct Staged {
         ratio is negative and the two exchange their places: T_CS holds the circular spline to the housing, and T_FS, over the
         twist of the flexspline against the output shaft, is the torque on it.
 
+        The modes of the ``ring`` are driven by F_m and take the displacement u from mu; see ring.Modes.
+
         Each stiffness may vary as the wave generator turns. The torque with which such a spring turns the wave generator is
         part of the model. Without load and misalignment theta_CS = theta_WG / i exactly.
 
@@ -74,14 +79,14 @@ struct Staged {
 
         Outputs as in the paper: ``bearing_displacement`` x_1, ``radial_displacement`` x_2, ``flexspline_displacement`` y_1,
         ``circular_spline_displacement`` y_2, ``bearing_force`` F_b, ``mesh_force`` F_m, ``wave_generator_torque`` T_WG,
-        ``circular_spline_torque`` T_CS, and ``output_torque`` T = torque - friction_output.
+        ``circular_spline_torque`` T_CS, ``output_torque`` T = torque - friction_output, and ``ring_displacement`` u.
 
-        Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has
-        play in the flexspline's spring alone) and every mode of the flexspline except torsion and the radial one. The wave
-        generator needs an input_inertia. If the kinematic error also has a pitch radius and a pressure angle, they must be
-        those of the stages. No catalogue gives these stiffnesses: calculate or assume them. The bodies vibrate at 1e4 to 1e5
-        rad/s. If every body has a damper, fixed steps need not resolve this vibration, but only the variation and the bend of
-        the springs. A run with longer steps is refused; the message contains the longest step allowed.
+        Valid for deformations that are small against r_g. Leaves out clearance of mesh and bearing (stiffness.Backlash has play
+        in the flexspline's spring alone) and, with a rigid ring, every mode of the flexspline except torsion and the radial one.
+        The wave generator needs an input_inertia. If the kinematic error also has a pitch radius and a pressure angle, they must
+        be those of the stages. No catalogue gives these stiffnesses: calculate or assume them. The bodies vibrate at 1e4 to 1e5
+        rad/s. If every body has a damper, fixed steps need not resolve this vibration, but only the variation and the bend of the
+        springs. A run with longer steps is refused; the message contains the longest step allowed.
 
         >>> import strainwave as sw
         >>> structure = sw.structure.Staged(pitch_radius=25e-3, bearing_stiffness=5e7, mesh_stiffness=1e8,
@@ -107,6 +112,7 @@ struct Staged {
         visit(SW_REQUIRED(m, radial_mass, "kg", "Mass m_r of the flexspline's ring that moves radially", smallest));
         visit(SW_REQUIRED(m, flexspline_inertia, "kg.m2", "Inertia J_FS of the flexspline's ring, about its axis", smallest));
         visit(SW_REQUIRED(m, circular_spline_inertia, "kg.m2", "Inertia J_CS of the circular spline", smallest));
+        visit(SW_PART(m, ring, "Vibration of the flexspline's ring"));
         visit(SW_PART(m, coupling_variation, "Variation of K_WG with the angle of the wave generator"));
         visit(SW_PART(m, bearing_variation, "Variation of K_b"));
         visit(SW_PART(m, mesh_variation, "Variation of K_m"));
@@ -124,6 +130,7 @@ struct Staged {
         S held_speed{0.0};
         S driving_lead{0.0};
         S driving_speed{0.0};
+        [[no_unique_address]] typename Ring::State ring{};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -135,12 +142,14 @@ struct Staged {
             visit(SW_FIELD(m, held_speed, "rad/s", "Speed of the held ring"));
             visit(SW_FIELD(m, driving_lead, "rad", "Angle of the ring that drives less the output angle"));
             visit(SW_FIELD(m, driving_speed, "rad/s", "Speed of the ring that drives"));
+            visit(SW_PART(m, ring, "Vibration of the flexspline's ring"));
         }
     };
 
     struct Output {
         S bearing_displacement{0.0}, radial_displacement{0.0}, flexspline_displacement{0.0}, circular_spline_displacement{0.0};
         S bearing_force{0.0}, mesh_force{0.0}, wave_generator_torque{0.0}, circular_spline_torque{0.0}, output_torque{0.0};
+        S ring_displacement{0.0};
 
         template <class Self, class Visit>
         static constexpr void fields(Self& m, Visit&& visit) {
@@ -153,6 +162,7 @@ struct Staged {
             visit(SW_FIELD(m, wave_generator_torque, "N.m", "Torque T_WG on the wave generator"));
             visit(SW_FIELD(m, circular_spline_torque, "N.m", "Torque T_CS of the circular spline on its joint"));
             visit(SW_FIELD(m, output_torque, "N.m", "Torque T at the output shaft, less the friction there"));
+            visit(SW_FIELD(m, ring_displacement, "m", "Displacement u of the mesh by the modes of the flexspline's ring"));
         }
     };
 
@@ -177,7 +187,7 @@ struct Staged {
     };
 
     /// The chain of bodies at the output's scale: every radial displacement times tan(alpha_t) / r_g, every tangential one by r_g.
-    template <class CouplingVarying, class BearingVarying, class MeshVarying, class SplineVarying>
+    template <class Vibration, class CouplingVarying, class BearingVarying, class MeshVarying, class SplineVarying>
     struct Chain {
         Joint<CouplingVarying> coupling;
         Joint<BearingVarying> bearing;
@@ -187,6 +197,7 @@ struct Staged {
         S lever;                                               ///< r_g / tan(alpha_t), m: force of the bearing per torque
         S mesh_lever;                                          ///< r_g cos(alpha_t), m
         S radius;                                              ///< r_g
+        Vibration ring;
 
         using State = typename Staged::State;
         using Output = typename Staged::Output;
@@ -213,13 +224,14 @@ struct Staged {
         template <class Mesh>
         constexpr Reaction<S, State> reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                               const Load<S>& load) const {
-            return reaction(joints(inner, at, stance), inner, at, stance, load);
+            return reaction(joints(inner, at, stance), inner, at, stance, load, passing(at, inner.generator_speed));
         }
         template <class Mesh>
         constexpr Reaction<S, State> even_reaction(const State& inner, const Shafts<S>& at, const Mesh& stance,
                                                    const Load<S>& load) const {
             const auto even = [](const auto&) { return variation::Factor<S>{}; };
-            return reaction(joints(inner, at, stance, even), inner, at, stance, load);
+            const Passing still{S(0.0), S(0.0)};
+            return reaction(joints(inner, at, stance, even, still), inner, at, stance, load, still);
         }
 
         template <class Mesh>
@@ -228,12 +240,19 @@ struct Staged {
             const auto elastic = [](const Strained& joint) { return S(0.5) * joint.elastic * joint.deformation; };
             const auto lost = [](const Strained& joint) { return (joint.torque - joint.elastic) * joint.rate; };
             const Ends inertia = at_ends(at.inverse_ratio, flexspline_inertia, spline_inertia);
-            return {elastic(of.coupling) + elastic(of.bearing) + elastic(of.mesh) + elastic(of.spline),
-                    S(0.5) * (load.generator_inertia * inner.generator_speed * inner.generator_speed +
-                              radial_inertia * inner.radial_speed * inner.radial_speed +
-                              inertia.held * inner.held_speed * inner.held_speed +
-                              inertia.driving * inner.driving_speed * inner.driving_speed),
-                    lost(of.coupling) + lost(of.bearing) + lost(of.mesh) + lost(of.spline), of.bearing.elastic};
+            Energies<S> found{elastic(of.coupling) + elastic(of.bearing) + elastic(of.mesh) + elastic(of.spline),
+                              S(0.5) * (load.generator_inertia * inner.generator_speed * inner.generator_speed +
+                                        radial_inertia * inner.radial_speed * inner.radial_speed +
+                                        inertia.held * inner.held_speed * inner.held_speed +
+                                        inertia.driving * inner.driving_speed * inner.driving_speed),
+                              lost(of.coupling) + lost(of.bearing) + lost(of.mesh) + lost(of.spline), of.bearing.elastic};
+            if constexpr (vibrates) {
+                const ring::Energies<S> of_ring = ring.energies(inner.ring);
+                found.elastic = found.elastic + of_ring.elastic;
+                found.kinetic = found.kinetic + of_ring.kinetic;
+                found.damping = found.damping + of_ring.damping;
+            }
+            return found;
         }
 
         template <class Mesh>
@@ -247,7 +266,7 @@ struct Staged {
                     radius * stance.twist,     radius * select(held_flexspline, driving, inner.held_angle),
                     of.bearing.torque / lever, of.mesh.torque / mesh_lever,
                     of.coupling.torque,        of.spline.torque,
-                    stance.torque - friction};
+                    stance.torque - friction,  ring_displacement(inner)};
         }
 
         template <class Mesh>
@@ -258,10 +277,16 @@ struct Staged {
             const S torque = load.spring / (S(1.0) + stance.apart.per_twist);
             const Strained of_bearing = resting(bearing, angle, torque), of_mesh = resting(mesh, angle, torque),
                            of_spline = resting(spline, angle, torque);
-            const S turning = load.turning + of_bearing.turning + of_mesh.turning + of_spline.turning;
+            S turning = load.turning + of_bearing.turning + of_mesh.turning + of_spline.turning;
+            State found{};
+            if constexpr (vibrates) {
+                const Passing lobes = passing(at, at.input_speed);
+                const S force = torque / mesh_lever;
+                found.ring = ring.steady_state(force, lobes.speed);
+                turning = turning - lobes.per_angle * ring.torque(found.ring, force);
+            }
             const variation::Factor<S> factor = coupling.factor(angle);
             const S bend = S(0.5) * coupling.stiffness * factor.slope * inner.windup * inner.windup;
-            State found{};
             found.windup = (stance.per_input * torque + turning + bend) / (coupling.stiffness * factor.value);
             found.generator_speed = at.input_speed;
             found.radial_lag = stance.error + of_bearing.deformation;
@@ -269,20 +294,25 @@ struct Staged {
             found.held_angle = select(held_flexspline, stance.twist, of_spline.deformation);
             found.driving_lead = select(held_flexspline, of_spline.deformation, stance.twist);
             found.driving_speed = at.output_speed;
-            return {found, found.windup * at.inverse_ratio + found.radial_lag + of_mesh.deformation + found.held_angle +
-                               found.driving_lead};
+            S in_mesh = of_mesh.deformation;
+            if constexpr (vibrates) in_mesh = in_mesh + ring_displacement(found) / mesh_lever;
+            return {found, found.windup * at.inverse_ratio + found.radial_lag + in_mesh + found.held_angle + found.driving_lead};
         }
         template <class Mesh>
         constexpr S compliance(const Shafts<S>& at, const Mesh& stance) const {
-            return S(1.0) / bearing.stiffness + S(1.0) / mesh.stiffness + S(1.0) / spline.stiffness +
-                   abs(stance.per_input * at.inverse_ratio) / coupling.stiffness;
+            const S joints = S(1.0) / bearing.stiffness + S(1.0) / mesh.stiffness + S(1.0) / spline.stiffness +
+                             abs(stance.per_input * at.inverse_ratio) / coupling.stiffness;
+            if constexpr (vibrates)
+                return joints + ring.compliance() / (mesh_lever * mesh_lever);
+            else
+                return joints;
         }
 
         /// Upper bound of the highest undamped natural frequency [rad/s].
         constexpr S natural_frequency(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.stiffness, spline.max_stiffness());
             return sqrt(largest_eigenvalue(bodies, {coupling.max_stiffness(), bearing.max_stiffness(), mesh.max_stiffness(),
-                                                    ends.held, ends.driving, bodies.load_stiffness}));
+                                                    ends.held, ends.driving, bodies.load_stiffness, &ring::Mode<S>::stiffness}));
         }
         /// Highest frequency [rad/s] of springs with the varying part of their stiffness, twice. At a resonance of step and
         /// vibration, a step of one radian of this frequency can excite an undamped mode. In shorter steps the mode still grows a
@@ -291,8 +321,8 @@ struct Staged {
         /// position, d that by the error, both over the roots of the inertias.
         constexpr S uneven_frequency(const Bodies<S>& bodies, const Unevenness<S>& of) const {
             const Ends ends = at_ends(bodies.inverse_ratio, of.stiffness, spline.varying_part());
-            const S springs = largest_eigenvalue(
-                bodies, {coupling.varying_part(), bearing.varying_part(), mesh.varying_part(), ends.held, ends.driving, S(0.0)});
+            const S springs = largest_eigenvalue(bodies, {coupling.varying_part(), bearing.varying_part(), mesh.varying_part(),
+                                                          ends.held, ends.driving, S(0.0), nullptr});
             const S straight = bodies.inverse_ratio * bodies.inverse_ratio / bodies.generator_inertia + S(1.0) / radial_inertia;
             const S bent = of.slope * of.slope / bodies.generator_inertia + of.per_twist * of.per_twist / flexspline_inertia;
             const S along_both = abs(bodies.inverse_ratio) * of.slope / bodies.generator_inertia;
@@ -304,7 +334,8 @@ struct Staged {
         }
         constexpr S decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
-            return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0)});
+            return largest_eigenvalue(bodies, {coupling.damping, bearing.damping, mesh.damping, ends.held, ends.driving, S(0.0),
+                                               &ring::Mode<S>::damping});
         }
 
     private:
@@ -314,16 +345,33 @@ struct Staged {
         struct Ends {
             S held, driving;
         };
-        /// Largest eigenvalue of the joints in series, from the input to the load.
+        /// Joints in series, from the input to the load, and the number of the ring's modes beside the mesh.
         struct Line {
             S coupling, bearing, mesh, held, driving, load;
+            S ring::Mode<S>::* of_mode;  ///< none: modes are free
         };
+        /// Speed at which the lobes pass the flexspline [rad/s], and the angle that they pass per angle of the wave generator.
+        struct Passing {
+            S speed, per_angle;
+        };
+        static constexpr bool vibrates = Vibration::capacity > 0;
 
         static constexpr auto flexspline_held(const Shafts<S>& at) { return at.inverse_ratio > S(0.0); }
         /// Values of the flexspline and of the circular spline, by which of them is held.
         static constexpr Ends at_ends(const S& inverse_ratio, const S& of_flexspline, const S& of_spline) {
             const auto held_flexspline = inverse_ratio > S(0.0);
             return {select(held_flexspline, of_flexspline, of_spline), select(held_flexspline, of_spline, of_flexspline)};
+        }
+
+        static constexpr Passing passing(const Shafts<S>& at, const S& generator_speed) {
+            const S per_angle = select(flexspline_held(at), S(1.0), S(1.0) - at.inverse_ratio);
+            return {per_angle * generator_speed, per_angle};
+        }
+        constexpr S ring_displacement(const State& inner) const {
+            if constexpr (vibrates)
+                return ring.displacement(inner.ring);
+            else
+                return S(0.0);
         }
 
         template <class Varying>
@@ -341,11 +389,16 @@ struct Staged {
 
         template <class Mesh>
         constexpr Reaction<S, State> reaction(const Joints& of, const State& inner, const Shafts<S>& at, const Mesh& stance,
-                                              const Load<S>& load) const {
+                                              const Load<S>& load, const Passing& lobes) const {
             const Ends torque =
                 at_ends(at.inverse_ratio, load.spring - stance.apart.per_twist * of.bearing.torque, of.spline.torque);
-            const S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
+            S turning = load.turning + of.bearing.turning + of.mesh.turning + of.spline.turning + of.coupling.turning;
             State rate{};
+            if constexpr (vibrates) {
+                const S force = of.mesh.torque / mesh_lever;
+                rate.ring = ring.rate(inner.ring, force, lobes.speed);
+                turning = turning - lobes.per_angle * ring.torque(inner.ring, force);
+            }
             rate.windup = at.input_speed - inner.generator_speed;
             rate.generator_speed = (of.coupling.torque - stance.per_input * of.bearing.torque - turning) / load.generator_inertia;
             rate.radial_lag = inner.generator_speed * at.inverse_ratio - inner.radial_speed;
@@ -361,18 +414,25 @@ struct Staged {
         template <class Mesh>
         constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance) const {
             const Angle<S> angle = generator(inner, at).angle;
-            return joints(inner, at, stance, [&](const auto& joint) { return joint.factor(angle); });
+            return joints(
+                inner, at, stance, [&](const auto& joint) { return joint.factor(angle); }, passing(at, inner.generator_speed));
         }
         template <class Mesh, class FactorOf>
-        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance, const FactorOf& factor) const {
+        constexpr Joints joints(const State& inner, const Shafts<S>& at, const Mesh& stance, const FactorOf& factor,
+                                const Passing& lobes) const {
             const auto held_flexspline = flexspline_held(at);
-            const S in_mesh =
+            S in_mesh =
                 at.transmission_error - inner.windup * at.inverse_ratio - inner.radial_lag - inner.held_angle - inner.driving_lead;
+            S in_mesh_rate = inner.radial_speed - inner.held_speed - inner.driving_speed;
+            if constexpr (vibrates) {
+                in_mesh = in_mesh - ring.displacement(inner.ring) / mesh_lever;
+                in_mesh_rate = in_mesh_rate - ring.displacement_rate(inner.ring, lobes.speed) / mesh_lever;
+            }
             const S on_spline = select(held_flexspline, inner.driving_lead, inner.held_angle);
             const S on_spline_rate = select(held_flexspline, inner.driving_speed - at.output_speed, inner.held_speed);
             return {strained(coupling, factor(coupling), inner.windup, at.input_speed - inner.generator_speed),
                     strained(bearing, factor(bearing), stance.apart.deformation, stance.apart.deformation_rate),
-                    strained(mesh, factor(mesh), in_mesh, inner.radial_speed - inner.held_speed - inner.driving_speed),
+                    strained(mesh, factor(mesh), in_mesh, in_mesh_rate),
                     strained(spline, factor(spline), on_spline, on_spline_rate)};
         }
 
@@ -383,36 +443,51 @@ struct Staged {
         /// Lowest decay rate [1/s] of a body within the gear while the others are at rest.
         constexpr S slowest_decay(const Bodies<S>& bodies) const {
             const Ends ends = at_ends(bodies.inverse_ratio, bodies.damping, spline.damping);
-            const Ends ring = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
+            const Ends inertia = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
             const S turned = bodies.inverse_ratio * bodies.inverse_ratio * bearing.damping;
-            return S(0.5) * min(min((coupling.damping + turned) / bodies.generator_inertia,
-                                    (bearing.damping + mesh.damping) / radial_inertia),
-                                min((mesh.damping + ends.held) / ring.held, (mesh.damping + ends.driving) / ring.driving));
+            S lowest =
+                min(min((coupling.damping + turned) / bodies.generator_inertia, (bearing.damping + mesh.damping) / radial_inertia),
+                    min((mesh.damping + ends.held) / inertia.held, (mesh.damping + ends.driving) / inertia.driving));
+            if constexpr (vibrates)
+                for (int i = 0; i < ring.size(); ++i) lowest = min(lowest, ring.mode(i).damping / ring.mode(i).mass);
+            return S(0.5) * lowest;
+        }
+
+        constexpr S of_mode(const Line& line, int i) const {
+            return line.of_mode ? mesh_lever * mesh_lever * ring.mode(i).*line.of_mode : S(0.0);
         }
 
         /// Largest eigenvalue of the inverse of the inertias times the joints, by power iteration. Rayleigh's quotient comes from
         /// below and is close enough for a limit on steps.
         constexpr S largest_eigenvalue(const Bodies<S>& bodies, const Line& line) const {
-            constexpr int bodies_count = 6, rounds = 100;
-            const Ends ring = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
-            const Array<S, bodies_count> inertia{
-                {bodies.input_inertia, bodies.generator_inertia, radial_inertia, ring.held, ring.driving, bodies.output_inertia}};
-            Array<S, bodies_count> x{};
-            for (int i = 0; i < bodies_count; ++i) x[i] = S(1.0 + 0.1 * i) * S(i % 2 == 0 ? 1.0 : -1.0) / sqrt(inertia[i]);
+            constexpr int chain_count = 6, rounds = 100;
+            using Numbers = Array<S, chain_count + Vibration::capacity>;
+            const Ends rings = at_ends(bodies.inverse_ratio, flexspline_inertia, spline_inertia);
+            Numbers inertia{
+                {bodies.input_inertia, bodies.generator_inertia, radial_inertia, rings.held, rings.driving, bodies.output_inertia}};
+            int count = chain_count;
+            if constexpr (vibrates)
+                for (int i = 0; i < ring.size(); ++i) inertia[count++] = mesh_lever * mesh_lever * ring.mode(i).mass;
+            Numbers x{};
+            for (int i = 0; i < count; ++i) x[i] = S(1.0 + 0.1 * i) * S(i % 2 == 0 ? 1.0 : -1.0) / sqrt(inertia[i]);
             S eigenvalue{0.0};
             for (int round = 0; round < rounds; ++round) {
                 const S turned = bodies.inverse_ratio * x[1];
                 const S coupled = line.coupling * (x[0] - x[1]), borne = line.bearing * (turned - x[2]);
-                const S meshed = line.mesh * (x[2] - x[3] - x[4]), kept = line.held * x[3], driven = line.driving * (x[4] - x[5]);
-                const Array<S, bodies_count> force{{coupled, bodies.inverse_ratio * borne - coupled, meshed - borne, kept - meshed,
-                                                    driven - meshed, line.load * x[5] - driven}};
+                S in_mesh = x[2] - x[3] - x[4];
+                for (int i = chain_count; i < count; ++i) in_mesh = in_mesh - x[i];
+                const S meshed = line.mesh * in_mesh, kept = line.held * x[3], driven = line.driving * (x[4] - x[5]);
+                Numbers force{{coupled, bodies.inverse_ratio * borne - coupled, meshed - borne, kept - meshed, driven - meshed,
+                               line.load * x[5] - driven}};
+                if constexpr (vibrates)
+                    for (int i = chain_count; i < count; ++i) force[i] = of_mode(line, i - chain_count) * x[i] - meshed;
                 S work{0.0}, size{0.0};
-                for (int i = 0; i < bodies_count; ++i) {
+                for (int i = 0; i < count; ++i) {
                     work = work + x[i] * force[i];
                     size = size + x[i] * inertia[i] * x[i];
                 }
                 eigenvalue = work / max(size, S(smallest));
-                for (int i = 0; i < bodies_count; ++i) x[i] = force[i] / (inertia[i] * max(eigenvalue, S(smallest)));
+                for (int i = 0; i < count; ++i) x[i] = force[i] / (inertia[i] * max(eigenvalue, S(smallest)));
             }
             return eigenvalue;
         }
@@ -423,7 +498,7 @@ struct Staged {
         const SinCos<S> flank = sincos(pressure_angle);
         const S lever = pitch_radius * flank.cos / flank.sin, mesh_lever = pitch_radius * flank.cos;
         const S of_bearing = lever * lever, of_mesh = mesh_lever * mesh_lever;
-        return Chain<decltype(compiled(coupling_variation)), decltype(compiled(bearing_variation)),
+        return Chain<decltype(compiled(ring)), decltype(compiled(coupling_variation)), decltype(compiled(bearing_variation)),
                      decltype(compiled(mesh_variation)), decltype(compiled(circular_spline_variation))>{
             {coupling_stiffness, coupling_damping, compiled(coupling_variation)},
             {bearing_stiffness * of_bearing, bearing_damping * of_bearing, compiled(bearing_variation)},
@@ -434,7 +509,8 @@ struct Staged {
             circular_spline_inertia,
             lever,
             mesh_lever,
-            pitch_radius};
+            pitch_radius,
+            compiled(ring)};
     }
 
     static constexpr bool rigid() { return false; }

@@ -24,7 +24,7 @@
 ///     decay(bodies)                          1/s, by damping alone
 namespace strainwave::structure {
 
-/// Angles and speeds of the two shafts of a gear.
+/// Angles and speeds of the two shafts of a gear, and its temperature.
 template <class S>
 struct Shafts {
     Angle<S> input_angle;
@@ -32,6 +32,7 @@ struct Shafts {
     S transmission_error;  ///< theta_in / i - theta_out, rad
     S output_speed;        ///< rad/s
     S inverse_ratio;       ///< 1 / i
+    S temperature;         ///< K
 };
 
 /// Angle and speed of the wave generator.
@@ -59,7 +60,7 @@ struct Mesh {
     S per_output;    ///< and per output angle, without its sign; not 1 where the error of a rigid structure follows the load
     S twist;         ///< of the spring, rad
     S twist_rate;    ///< rad/s
-    S spring;        ///< Torque of the spring, its hysteresis and damping, N.m
+    S spring;        ///< Torque of the spring, its hysteresis, damping and material, N.m
     S torque;        ///< on the output shaft, N.m
     S input_torque;  ///< that holds the input shaft back, N.m
     Apart apart;
@@ -69,7 +70,7 @@ struct Mesh {
 /// Load of the rest of the gear on the bodies within it.
 template <class S>
 struct Load {
-    S spring;             ///< of the spring, its hysteresis and damping, N.m
+    S spring;             ///< of the spring, its hysteresis, damping and material, N.m
     S turning;            ///< with which a spring whose stiffness varies holds the wave generator back, N.m
     S generator_inertia;  ///< kg.m2
 };

@@ -1,5 +1,6 @@
 #pragma once
 #include <strainwave/list.hpp>
+#include <strainwave/variation/ball_bearing.hpp>
 #include <strainwave/variation/constant.hpp>
 #include <strainwave/variation/periodic.hpp>
 
@@ -7,6 +8,6 @@
 /// default.
 namespace strainwave::variation {
 
-using Models = List<Constant, Periodic>;
+using Models = List<Constant, Periodic, BallBearing>;
 
 }  // namespace strainwave::variation

@@ -24,6 +24,7 @@ from strainwave.presentation import Statement
 
 Array = NDArray[np.float64]
 Model: TypeAlias = Gear | Drive | GearSet
+MAX_ROUNDING_OF_PHASE = 1e-12  # rad: of a whole turn that is taken off
 MIN_SHARE_OF_TORQUE = 0.5  # of the torque that a gear was measured to: a smaller loop has no standard deviation
 
 
@@ -142,12 +143,17 @@ class Difference(Statement):
         """The second less the first in standard deviations; None where none is stated, or it is 0."""
         if isinstance(self.first, str | None) or isinstance(self.second, str | None) or not self.sigma:
             return None
-        return (self.second - self.first) / self.sigma
+        return (wrapped(self.second - self.first) if self.is_phase else self.second - self.first) / self.sigma
+
+    @property
+    def is_phase(self) -> bool:
+        """True for a phase: a whole turn makes no difference."""
+        return self.unit == "rad" and self.path.partition("[")[0].endswith("phase")
 
     @property
     def change(self) -> float | None:
-        """The second less the first, relative to the first; None where that is no number."""
-        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or self.first == 0:
+        """The second less the first, relative to the first; None where that is no number, and of phases."""
+        if isinstance(self.first, str | None) or isinstance(self.second, str | None) or self.first == 0 or self.is_phase:
             return None
         change = (self.second - self.first) / self.first
         return change if isfinite(change) else None
@@ -269,11 +275,33 @@ def _between(path: str, first: Any, second: Any) -> list[Difference]:
     for number in parameters(first):
         one, other = getattr(first, number.name), getattr(second, number.name)
         for place, pair in _pairs(f"{path}.{number.name}", one, other):
-            if pair[0] != pair[1]:
-                differing.append(Difference(place, *pair, number.unit or ""))
+            difference = Difference(place, *pair, number.unit or "")
+            if difference.is_phase:
+                difference = replace(difference, first=_phase(difference.first), second=_phase(difference.second))
+            if _differ(difference):
+                differing.append(difference)
     for part in parts(first):
         differing += _between(f"{path}.{part.name}", getattr(first, part.name), getattr(second, part.name))
     return differing
+
+
+def wrapped(angle: float) -> float:
+    """Return an angle within half a turn, in (-pi, pi] [rad].
+
+    >>> wrapped(-pi) == pi, round(wrapped(7.0), 3)
+    (True, 0.717)
+    """
+    return pi - (pi - angle) % (2.0 * pi)
+
+
+def _phase(value: float | str | None) -> float | str | None:
+    return wrapped(value) if isinstance(value, float | int) else value
+
+
+def _differ(each: Difference) -> bool:
+    if each.is_phase and isinstance(each.first, float) and isinstance(each.second, float):
+        return abs(wrapped(each.second - each.first)) > MAX_ROUNDING_OF_PHASE
+    return each.first != each.second
 
 
 def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any]]]:

@@ -68,7 +68,7 @@ def _replaced(drive: Drive) -> Iterator[tuple[str, Any, str]]:
     for name, part in whole.items():
         while isinstance(part, (sensor.Noisy, sensor.Quantised)):
             part = part.law
-        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder) else part
+        smooth[name] = sensor.Ideal() if isinstance(part, sensor.Encoder | sensor.SineCosineEncoder) else part
     if changed := [name for name, part in whole.items() if smooth[name] is not part]:
         yield (
             "sensors",
@@ -351,7 +351,10 @@ def modes(drive: Drive) -> dict[str, Array]:
     same = ("kinematics", "stiffness", "hysteresis", "input_inertia", "softening", "structure", "stiffness_variation")
     gear = Gear(**{name: getattr(drive.gear, name) for name in same})
     damped = [field["name"] for field in gear.structure.fields if field["unit"] in DAMPING_UNITS]
-    gear = gear.replace(structure=gear.structure.replace(dict.fromkeys(damped, 0.0)))
+    undamped: Any = gear.structure.replace(dict.fromkeys(damped, 0.0))
+    if shares := getattr(getattr(undamped, "ring", None), "damping", ()):
+        undamped = undamped.replace(ring=undamped.ring.replace(damping=[0.0] * len(shares)))
+    gear = gear.replace(structure=undamped)
     bare = Drive(gear=gear, motor=motor.TorqueSource(inertia=drive.motor.inertia), load=drive.load)
     held = bare.replace(gear=gear.replace(friction_input=friction.Coulomb(coulomb=HOLDING_TORQUE, breakaway=HOLDING_TORQUE)))
     return {"free": _frequencies(bare), "input held": _frequencies(held)}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import Drive, Gear, arguments, structure, typeset, variation
+from strainwave import Drive, Gear, arguments, material, structure, typeset, variation
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.parameters import every
@@ -41,7 +41,7 @@ class OutputTorque(ComparedByFields, Pictured):
     >>> import numpy as np
     >>> import strainwave as sw
     >>> gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=50.0), stiffness=sw.stiffness.Linear(k=1e4))
-    >>> found = sw.output_torque(gear, np.array([0.0, 0.05, 0.1]), np.zeros(3))
+    >>> found = sw.analysis.output_torque(gear, np.array([0.0, 0.05, 0.1]), np.zeros(3))
     >>> found.torque.round(9), found.twist.round(9)
     (array([ 0., 10., 20.]), array([0.   , 0.001, 0.002]))
     """
@@ -130,7 +130,11 @@ def _angles(input_angle: ArrayLike, output_angle: ArrayLike) -> Array:
 
 def check_static(gear: Gear, name: str) -> None:
     """"""
-    for part, plain in (("structure", structure.Lumped), ("stiffness_variation", variation.Constant)):
+    for part, plain in (
+        ("structure", structure.Lumped),
+        ("stiffness_variation", variation.Constant),
+        ("material", material.Elastic),
+    ):
         if not isinstance(found := getattr(gear, part), plain):
             raise ValueError(
                 f"{name}: {part} = {type(found).__name__} makes the torque depend on more than the twist; take the gear "

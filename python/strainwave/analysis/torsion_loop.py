@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave import Gear, ring, structure
 from strainwave.files.gear_set import GearSet
 from strainwave.files.units import convert
 from strainwave.parameters import every
@@ -25,6 +26,34 @@ STEP_SIGMA = 0.1  # standard deviations of a number, between two loops
 MAX_STEP_SHARE = 1e-3  # of a number, between two loops
 NO_CHANGE = 1e-9  # of the largest value of a curve: a number that changes it less has no effect
 LAWS = ("gear.stiffness.", "gear.hysteresis.")
+
+
+def series_compliance(gear: Gear) -> float:
+    """Return the compliance at the output in series with the spring, the input shaft held [rad/(N.m)]; 0 without stages.
+
+    The flight actuator paper's statics, corrected (its eq. (1) at rest, with errata 1 and 2 of the flight actuator paper):
+    radial displacements times tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear
+    one torque,
+
+        tan² alpha_t / (K_b r_g²) + (1 / K_m + sum_k 1 / (m_k omega_k²)) / (r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG),
+
+    with the modes of the ring as the wave generator stands.
+
+    >>> import strainwave as sw
+    >>> gear = sw.GearSet.read("tilt-actuator").gear
+    >>> round(1e6 * series_compliance(gear), 3), series_compliance(sw.Gear())
+    (37.049, 0.0)
+    """
+    stages = gear.structure
+    if not isinstance(stages, structure.Staged):
+        return 0.0
+    radius, slope = stages.pitch_radius, float(np.tan(stages.pressure_angle))
+    bearing = slope**2 / (stages.bearing_stiffness * radius**2)
+    modes = zip(stages.ring.mass, stages.ring.natural_frequency, strict=True) if isinstance(stages.ring, ring.Modes) else ()
+    along_mesh = 1.0 / stages.mesh_stiffness + sum(1.0 / (mass * frequency**2) for mass, frequency in modes)
+    mesh = (1.0 + slope**2) * along_mesh / radius**2
+    coupling = 1.0 / (stages.coupling_stiffness * gear.kinematics.ratio**2)
+    return bearing + mesh + 1.0 / stages.circular_spline_stiffness + coupling
 
 
 def measured_torque(gear_set: GearSet) -> float | None:

@@ -6,6 +6,7 @@ import os
 import sys
 import warnings
 from contextlib import redirect_stdout
+from errno import ENAMETOOLONG
 from io import StringIO, TextIOWrapper
 from pathlib import Path
 from shutil import get_terminal_size
@@ -33,7 +34,7 @@ from strainwave.commands.show import show
 from strainwave.commands.simulate import simulate
 from strainwave.commands.studio import studio
 from strainwave.commands.workbench import workbench
-from strainwave.messages import one_line, unquoted, with_options
+from strainwave.messages import one_line, shortened, unquoted, with_options
 from strainwave.questions import ALL_JOINTS, NUMBER, Answer, QuestionError, added_to
 
 rig = typer.Typer(cls=Wing, help="Plan, make and analyse tests of torsional stiffness.")
@@ -56,6 +57,7 @@ WITH_COLUMNS = ("identify", "predict", "orders", "diagnose joint", "rig analyse"
 WITH_ALL_JOINTS = ("identify", "diagnose joint")
 ANSWERS_OF_RIG = {"--column", "--unit", "--side"}
 
+MAX_NAME_BYTES = 255  # of a file, on the usual file systems
 MISUSED: type[Exception] = typer.BadParameter.__mro__[1]  # what typer raises of a command line, by no name of its own
 
 
@@ -141,12 +143,23 @@ def run() -> tuple[int, QuestionError | None]:
         _print(f"strainwave: a number is too large or too small to compute with: {one_line(str(error))}\n", sys.stderr)
         code = exit_codes.INPUT_REFUSED
     except (ValueError, TypeError, OSError, ImportError, FloatingPointError, MemoryError) as error:
-        reason = str(error) or "this takes more memory than there is"  # where Python itself raises a MemoryError
+        reason = _of_system(error) if isinstance(error, OSError) and error.strerror else str(error)
+        reason = reason or "this takes more memory than there is"  # where Python itself raises a MemoryError
         _print(f"strainwave: {one_line(with_options(reason, names_columns=_is_one_of(WITH_COLUMNS)))}\n", sys.stderr)
         code = exit_codes.INPUT_REFUSED
     finally:
         _print(output.getvalue(), sys.stdout)
     return code, question
+
+
+def _of_system(error: OSError) -> str:
+    """Return an error of the system in words, with the name of the file and what to do about a name that is too long."""
+    name = "" if error.filename is None else f"{shortened(str(error.filename))}: "
+    length = len(Path(str(error.filename or "")).name.encode())
+    remedy = (
+        f"; a file may have {MAX_NAME_BYTES} bytes in its name, not {length}: rename it" if error.errno == ENAMETOOLONG else ""
+    )
+    return f"{name}{str(error.strerror).lower()}{remedy}"
 
 
 def _is_accepted(answer: Answer) -> bool:

@@ -153,6 +153,47 @@ def limit(
     write_report(out, files, plan_summary(record, limits))
 
 
+@diagnose.command()
+def wear(
+    tests: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE…", help="A table of tests with work [J], or the gear files of the tests, in their order."),
+    ],
+    limit: Annotated[
+        list[str],
+        typer.Option(
+            metavar="NAME=VALUE",
+            help="Value at which the gear is worn out: of play, amplitude, friction or stiffness; repeat as needed.",
+        ),
+    ],
+    work: Annotated[str | None, typer.Option(help="Work [J] before each test, as 0,1e6,2e6; gear files lack it.")] = None,
+    work_per_hour: Annotated[
+        str | None, typer.Option(help="Work of the duty in an hour [J]: the life in hours; a table may have time for work.")
+    ] = None,
+    out: Annotated[Path, folder("Folder for report.html and the numbers.")] = Path("out/diagnose"),
+) -> None:
+    r"""Estimate wear rate and remaining life of a gear from tests.
+
+    Each quantity is a straight line over the transmitted work, torque times angle of the output. A table has a row for each
+    test, with columns called as the quantities. Of gear files only numbers that were identified count.
+
+    Examples:
+        strainwave diagnose wear wear.csv --limit 'play=1.4 arcmin'
+        strainwave diagnose wear wear.csv --limit 'play=1.4 arcmin' \
+          --limit stiffness=15e3 --work-per-hour '30 kJ'
+    """
+    from strainwave.diagnose.wear import wear_life
+    from strainwave.diagnose.wear_tests import limits_in, positive_number, read_wear_tests
+    from strainwave.report.provenance import Provenance
+    from strainwave.report.wear import wear_files, wear_summary
+
+    limits = limits_in(limit)
+    per_hour = None if work_per_hour is None else positive_number("--work-per-hour", work_per_hour, "J")
+    read = read_wear_tests(tests, list(limits), work, per_hour)
+    life = wear_life(read.work, read.values, limits)
+    write_report(out, wear_files(read, life, per_hour, Provenance.of_this_command(tests)), wear_summary(read, life, per_hour))
+
+
 def _question(
     gear: str | None,
     ratio: float | None,

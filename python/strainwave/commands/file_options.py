@@ -67,14 +67,14 @@ class FileOptions:
             ValueError: an option is not written as it must be, or names no channel, or a column that none of the files has
         """
         from strainwave.identification.reading.mapping import CONSTANTS, FileMapping, MappingFile
-        from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS
+        from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, UNUSED
         from strainwave.identification.reading.source import measurement_file
 
         side: Any = self.side
         channels = {*CHANNELS, *CHANNEL_ALIASES}
         if open_words := [word for word in (*(self.unit or ()), *(self.constant or ())) if NUMBER in word]:
             raise ValueError(f"{quoted(open_words[0])}: write the number in place of {NUMBER}")
-        columns = pairs("--column", self.column, channels)
+        columns = pairs("--column", self.column, {*channels, UNUSED})
         names = {name for file in files for name in file.names} if columns or self.unit else set[str]()
         for channel, column in columns.items() if names else ():
             if not any(_has(file, column) for file in files):

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from strainwave.commands.options import numeric
 from strainwave.number_texts import is_number, number_in
+
+if TYPE_CHECKING:
+    from strainwave.files.recording import Recording
 
 
 def plan(
@@ -16,7 +20,11 @@ def plan(
     ],
     want: Annotated[
         list[str],
-        typer.Option(metavar="PATH", help="A number to know, as gear.friction_input.viscous, or a part; repeat as needed."),
+        typer.Option(
+            metavar="PATH",
+            help="A number to know, as gear.friction_input.viscous, or a part; with --loop a source of loss, or loss for all; "
+            "repeat as needed.",
+        ),
     ],
     experiment: Annotated[
         list[str] | None,
@@ -43,6 +51,13 @@ def plan(
             help="Smallest difference a sensor resolves, in SI units, as angle=1e-5; also torque, input_torque, input_angle.",
         ),
     ] = None,
+    loop: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="A measured torsion loop (.csv, .parquet): plan loops that separate its sources of loss; repeat as needed.",
+        ),
+    ] = None,
     minutes: Annotated[float, numeric("What all measurements may take together.")] = 30.0,
     criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
     speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
@@ -52,19 +67,27 @@ def plan(
     r"""Rank candidate measurements by what they reach per minute.
 
     Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
-    deviation of each wanted number before and after, and what would remain unknown, and why.
+    deviation of each wanted number before and after, and what would remain unknown, and why. With --loop candidates are loops
+    at another load, rate, temperature or side of the gear, for the shares of the sources in the loss of a cycle.
 
     Examples:
         strainwave plan csg-25-100 --want gear.friction_input
         strainwave plan gear.toml --want gear.friction_input \
           --speed-limit "3000 rpm"
+        strainwave plan gear.toml --want loss --loop 20Nm.csv --loop 40Nm.csv
     """
     from typing import Any
 
     from strainwave.arguments import number, one_of
     from strainwave.files.entries import quantity_of
     from strainwave.files.gear_set import GearSet
+    from strainwave.identification.excitation.loops import plan_loops
     from strainwave.identification.excitation.plan import plan_experiments as planned
+
+    if loop:
+        seconds = 60.0 * number("--minutes", minutes, low=0.0)
+        print(plan_loops(_loops(loop, experiment, unknown), GearSet.read(start).gear, want, time=seconds))
+        return
 
     def in_si(option: str, given: str | None, unit: str) -> float | None:
         return None if given is None else quantity_of(option, given, unit, "command line").to(unit).value
@@ -85,6 +108,15 @@ def plan(
         resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
     print(found)
+
+
+def _loops(files: list[Path], experiment: list[str] | None, unknown: list[str] | None) -> list[Recording]:
+    """Return measured loops."""
+    from strainwave.files.recording import Recording
+
+    if unknown or any(each != "torsion" for each in experiment or ()):
+        raise ValueError("--loop plans torsion loops for all sources of loss; leave out --unknown and other experiments")
+    return [Recording.read(each) for each in files]
 
 
 def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,16 +13,18 @@ from numpy.typing import NDArray
 
 from strainwave import Drive
 from strainwave.dataset.features import FeatureSet
-from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan, Range, check_grid, range_of
+from strainwave.dataset.plan import HEALTHY_LABEL, DatasetPlan, OnsetTable, Range, check_grid, range_of
 from strainwave.dataset.profiles import PROFILES, command_of, peak_speed
 from strainwave.dataset.sampling import Indices, hashed, points, share_of
 from strainwave.files.gear_set import GearSet
 from strainwave.messages import listed, one_line, quoted
 from strainwave.parameters import every, unknown
 from strainwave.presentation import Presented
+from strainwave.simulation.ensemble import simulate_many
 from strainwave.simulation.resolution import check_resolution
 from strainwave.simulation.scenario import Scenario
 from strainwave.simulation.signals import command_unit, outputs
+from strainwave.simulation.usage import revolutions_in, work_in
 from strainwave.spline_orders import turning_spline_order
 
 Array = NDArray[np.float64]
@@ -29,6 +32,8 @@ Array = NDArray[np.float64]
 MAX_SIGNAL_FREQUENCY_SHARE = 0.4  # of the sample rate: the highest order at the highest speed
 SPEED_OVERSHOOT = 1.2  # of the actual over the commanded speed
 UNIT_DESIGN, CONDITION_DESIGN, PROFILE_SEED, NOISE_SEED = 0x11, 0x12, 0x13, 0x14  # columns of the hash of the plan's seed
+USAGE_UNITS = {"output_revolutions": "rev", "load_cycles": "1", "transmitted_work": "J"}  # of each unit of `sw.onset`
+MAX_BYTES_OF_RUNS = 16 << 20  # of series in memory at once, of runs whose usage is computed
 FEATURE_SIGNALS = {"current": "A", "torque": "N.m", "input_speed": "rad/s", "tracking_error": "rad"}
 
 
@@ -48,7 +53,8 @@ class MemberTable(Presented):
     """Members of one condition, each array of shape (members,).
 
     Args:
-        index, unit, stage, usage: of each
+        index, unit, stage: of each
+        usage: of each, before its run, in the unit of the onsets
         fault: label of each unit
         severity: by the kind of fault, at this stage
         parameters: value of every varying number of the drive, by its path
@@ -98,9 +104,7 @@ class Population:
         if wrong := [name for name in kept if name not in available]:
             raise ValueError(f"samples.columns: the drive has no output {quoted(wrong[0])}; there are {listed(available)}")
         assert self.paths  # of one fault of each table, which refuses names and numbers that it does not have
-        for fault in self.plan.faults:
-            if fault.onset is not None:
-                _onset_shares(fault.onset, np.zeros(1))
+        assert self.usage_kind  # refuses onsets that it does not know, and usage in several units
 
     # The drive
 
@@ -245,13 +249,61 @@ class Population:
         place = unit - unit[0]
         values = {name: column[place] for name, column in own.items()}
         share_of_life = stage / (plan.life.stages - 1.0) if plan.life.stages > 1 else np.ones(len(index))
-        usage = plan.life.usage * share_of_life
         fault = self.unit_faults(unit)
         parameters = {path: np.full(len(index), self.nominal[path]) for path in self.paths}
         parameters |= {path: values["spread", path] for path in self.spread}
+        if plan.life.runs is None:
+            usage = (plan.life.usage or 1.0) * share_of_life
+        else:
+            first_rows = np.unique(unit, return_index=True)[1]
+            healthy = {path: column[first_rows] for path, column in parameters.items()}
+            usage = plan.life.runs * share_of_life * self._usage_of_run(condition, healthy)[place]
         severity = self._severities(values, fault, usage)
         refusals = self._put_faults(parameters, values, fault, severity)
         return MemberTable(condition, index, unit, stage, usage, fault, severity, parameters, refusals)
+
+    @cached_property
+    def usage_kind(self) -> str:
+        """Unit of usage of the onsets of the plan."""
+        kinds = {onset.unit for table in self.plan.faults if hasattr(onset := _onset(table.onset), "unit")}
+        if len(kinds) > 1:
+            raise ValueError(
+                f"faults.onset.words.unit is {listed(sorted(kinds))}; all onsets of a plan count usage in one unit"
+            )
+        return next(iter(kinds), next(iter(USAGE_UNITS)))
+
+    def _usage_of_run(self, condition: Condition, healthy: Mapping[str, Array]) -> Array:
+        """Return the usage of one run of each unit without a fault, shape (units,).
+
+        Raises:
+            ValueError: the run of a healthy unit fails
+        """
+        count, table = len(next(iter(healthy.values()))), self.plan.simulation
+        if self.usage_kind == "load_cycles":
+            return np.ones(count)
+        at_once = max(int(MAX_BYTES_OF_RUNS / (16.0 * (table.duration / table.sample + 1.0))), 1)
+        usage = np.empty(count)
+        for rows in (slice(first, min(first + at_once, count)) for first in range(0, count, at_once)):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # failed runs are refused below, and the plan was checked
+                runs = simulate_many(
+                    self.drive,
+                    condition.command,
+                    {path: values[rows] for path, values in healthy.items()},
+                    table.dt,
+                    record=("torque", "output_angle"),
+                    sample=table.sample,
+                    load_torque=condition.load_torque,
+                    temperature=condition.temperature,
+                    threads=1,
+                )
+            if runs.failures:
+                reason = one_line(next(iter(runs.failures.values())))
+                raise ValueError(f"life.runs: a healthy unit fails in condition {condition.number}: {reason}")
+            angle = runs["output_angle"]
+            is_work = self.usage_kind == "transmitted_work"
+            usage[rows] = work_in(runs["torque"], angle) if is_work else revolutions_in(angle)
+        return usage
 
     @property
     def noise_seed(self) -> int:
@@ -270,7 +322,7 @@ class Population:
         severity = {kind: np.zeros(len(usage)) for kind in self.fault_kinds}
         for table in self.plan.faults:
             rows = fault == table.label
-            onset = np.ones(len(usage)) if table.onset is None else _onset_shares(table.onset, usage)
+            onset = np.ones(len(usage)) if (law := _onset(table.onset)) is None else np.asarray(law.share(usage))
             for kind in table.kinds:
                 severity[kind][rows] = (values["severity", table.label] * onset)[rows]
         return severity
@@ -340,13 +392,16 @@ def fault_kind(name: str) -> Any:
     return kinds[name]
 
 
-def _onset_shares(table: Any, usage: Array) -> Array:
+def _onset(table: OnsetTable | None) -> Any:
+    """Return the law of an onset; None if there is none."""
     from strainwave import _core
 
+    if table is None:
+        return None
     kinds: Mapping[str, Any] = _core.fault_families["onset"]
     if table.law not in kinds:
         raise ValueError(f"onset.law = {quoted(table.law)} is not known; there are {listed(kinds)}")
-    return np.asarray(_model(kinds[table.law], table.numbers | table.words).share(usage))
+    return _model(kinds[table.law], table.numbers | table.words)
 
 
 def _model(kind: Any, values: Mapping[str, Any]) -> Any:

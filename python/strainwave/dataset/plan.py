@@ -126,10 +126,20 @@ class UnitsTable(PlanTable):
 
 
 class LifeTable(PlanTable):
-    """Instants of the life of each unit at which it is run."""
+    """Instants of the life of each unit at which it is run.
+
+    The last of them is after a `usage` in the unit of the onsets, or after a number of `runs` like the member's own.
+    """
 
     stages: Annotated[int, Field(ge=1, le=10_000)] = 1
-    usage: Positive = 1.0
+    usage: Positive | None = None
+    runs: Positive | None = None
+
+    @model_validator(mode="after")
+    def _one_measure(self) -> LifeTable:
+        if self.usage is not None and self.runs is not None:
+            raise ValueError("usage and runs are given; give one of them: runs have the usage of the member's own run")
+        return self
 
 
 class OnsetTable(PlanTable):

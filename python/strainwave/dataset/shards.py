@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from strainwave.dataset.features import add_noise
 from strainwave.dataset.folder import DatasetFolder
-from strainwave.dataset.members import MemberTable, Population
+from strainwave.dataset.members import USAGE_UNITS, MemberTable, Population
 from strainwave.dataset.plan import SamplesTable
 from strainwave.dataset.sampling import joint
 from strainwave.files.writing import replacing
@@ -170,7 +170,7 @@ class Shards:
         conditions = population.condition_units | {"temperature": "K", "load_torque": "N.m"}
         return (
             names
-            | {"usage": "rev"}
+            | {"usage": USAGE_UNITS[population.usage_kind]}
             | severities
             | {f"condition.{name}": unit for name, unit in conditions.items()}
             | population.parameter_units

@@ -21,6 +21,7 @@ from strainwave.diagnose.health import line_crossing
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented, Row
+from strainwave.simulation.usage import work_in
 
 Array = NDArray[np.float64]
 
@@ -46,8 +47,7 @@ def transmitted_work(recording: Recording, *, torque: str = "torque", angle: str
     10.0
     """
     check_recording("recording", recording)
-    load, moved = np.abs(recording.values(torque, "N.m")), np.abs(np.diff(recording.values(angle, "rad")))
-    return float(0.5 * (load[1:] + load[:-1]) @ moved)
+    return float(work_in(recording.values(torque, "N.m"), recording.values(angle, "rad")))
 
 
 @dataclass(frozen=True)

@@ -436,9 +436,12 @@ def _left_out(gear: Gear, torque: float) -> Iterator[str]:
         ("softening", "softening of the spring with temperature"),
         ("stiffness_variation", "variation of the stiffness with the angle"),
         ("structure", "stages of the compliance"),
+        ("material", "internal damping of the material"),
     ):
         if getattr(gear, name) != getattr(default, name):
             yield words
+    if getattr(getattr(gear.structure, "ring", None), "active", False):
+        yield "resonances of the flexspline's ring"
     laws = (gear.friction_input, gear.friction_mesh, gear.friction_output)
     if any(isinstance(law, friction.LoadDependent | friction.TorqueEfficiency) for law in laws):
         yield "friction that grows with the load"

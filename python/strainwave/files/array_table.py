@@ -23,6 +23,7 @@ class ArrayTable:
     """Columns by their names in the file, all of one length; the columns left out, in words; and single numbers.
 
     Attributes:
+        others: series of another length, by their names
         runs: tables of several recordings in the file, of which this one is the longest; empty if it has one
     """
 
@@ -32,6 +33,7 @@ class ArrayTable:
     columns: Sequence[Array]
     left_out: Sequence[str] = ()
     singles: Mapping[str, float] = field(default_factory=dict)
+    others: Mapping[str, Array] = field(default_factory=dict)
     runs: Sequence[ArrayTable] = ()
 
     @property
@@ -225,9 +227,10 @@ def _table_of_one(file: str, variables: Iterable[tuple[str, Any]], budget: ReadB
         raise ValueError(one_line("; ".join([f"{file} holds no series of numbers", *left_out])))
     length, _ = max(Counter(len(values) for values in series.values()).items(), key=lambda each: (each[1], each[0]))
     kept = {name: values for name, values in series.items() if len(values) == length}
-    others = [f"{name} ({len(values)})" for name, values in series.items() if len(values) != length]
-    left_out += [f"of another length than {length}, and left out: {listed(others)}"] if others else []
-    return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles)
+    others = {name: values for name, values in series.items() if name not in kept}
+    lengths = listed(f"{name} ({len(values)})" for name, values in others.items())
+    left_out += [f"of another length than {length}, and left out: {lengths}"] if others else []
+    return ArrayTable(file, "", [label_of(name) for name in kept], list(kept.values()), left_out, singles, others)
 
 
 def _series(

@@ -260,7 +260,7 @@ def origin_lines(models: Mapping[str, Any], sources: Mapping[str, Entry]) -> lis
       law.breakaway = 0.05 ± 0.015 N.m
     """
     groups: dict[bool, list[str]] = {True: [], False: []}
-    for path, value, unit in (number for name, model in models.items() for number in _numbers(name, model)):
+    for path, value, unit in (number for name, model in models.items() for number in numbers_of(name, model)):
         entry = sources.get(path, Entry(NOT_GIVEN))
         if entry.source != NOT_GIVEN:
             identified, sigma = entry.source.startswith(IDENTIFIED_SOURCE), entry.sigma(value)
@@ -271,7 +271,7 @@ def origin_lines(models: Mapping[str, Any], sources: Mapping[str, Entry]) -> lis
     return [line for each, lines in groups.items() for line in (ORIGIN_HEADINGS[each], *lines) if lines] if groups[True] else []
 
 
-def _numbers(path: str, model: Any) -> Iterator[tuple[str, float, str]]:
+def numbers_of(path: str, model: Any) -> Iterator[tuple[str, float, str]]:
     """Yield path, value and unit of every number of a model and its parts."""
     for name, kind, unit in parameters(model):
         if kind == "sequence":
@@ -279,4 +279,4 @@ def _numbers(path: str, model: Any) -> Iterator[tuple[str, float, str]]:
         elif kind != "choice":
             yield f"{path}.{name}", getattr(model, name), unit
     for part in parts(model):
-        yield from _numbers(f"{path}.{part.name}", getattr(model, part.name))
+        yield from numbers_of(f"{path}.{part.name}", getattr(model, part.name))

@@ -333,7 +333,7 @@ class Recording(Pictured):
         """
         from strainwave.files.tables import open_table, read_table
 
-        return _checked(path, read_table(open_table(path), columns, units))
+        return recording_of(path, read_table(open_table(path), columns, units))
 
     @staticmethod
     def header(path: str | Path) -> tuple[str, ...]:
@@ -382,7 +382,7 @@ class Recording(Pictured):
         from strainwave.files.tables import read_table
         from strainwave.files.text_table import open_csv
 
-        return _checked(path, read_table(open_csv(path), columns, units))
+        return recording_of(path, read_table(open_csv(path), columns, units))
 
     @staticmethod
     def from_parquet(
@@ -399,7 +399,7 @@ class Recording(Pictured):
         from strainwave.files.parquet_table import open_parquet
         from strainwave.files.tables import read_table
 
-        return _checked(path, read_table(open_parquet(path), columns, units))
+        return recording_of(path, read_table(open_parquet(path), columns, units))
 
     def plot(self, names: Sequence[str] | None = None, against: str = "time") -> Figure:
         """Return a figure of columns over another one, in panels below each other on one axis.
@@ -529,8 +529,12 @@ def _time_fault(time: Array, unit: str) -> _Fault | None:
     return _Fault("time", row, f"{now} does not lie after {before}{where}; time must increase")
 
 
-def _checked(path: str | Path, table: Table) -> Recording:
-    """The recording, or what is wrong with it in terms of the file."""
+def recording_of(path: str | Path, table: Table) -> Recording:
+    """Return the recording of a table.
+
+    Raises:
+        ValueError: what is wrong with it, in terms of the file
+    """
     try:
         units = {name: _known(name, unit) for name, unit in table.units.items()}
         if not (fault := _first_fault(table.columns, units)):

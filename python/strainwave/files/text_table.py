@@ -6,8 +6,8 @@ import codecs
 import csv
 import io
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -50,6 +50,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 TITLE_LINE = "# title: "
+MAX_REMARK_BYTES = 2**16  # of the beginning of a file, in which remarks are looked at
 
 _DURATION_UNIT = re.compile(rb"(?<=\d) sec(?=[,;\t\n])")  # behind each time of a timetable of MATLAB
 _DATE_CELL = re.compile(r"\d{4}-\d\d-\d\d[T ]\d\d:\d\d(?::\d\d(?:\.\d{1,9})?)?(?:Z|[+-]\d\d(?::?\d\d)?)?", re.ASCII)
@@ -58,6 +59,10 @@ EMPTY_CELLS = ("", "nan", "NaN", "NAN", "-nan", "null", "NULL", "None", "NA", "N
 _MAX_CONTENT_ROWS = 1000  # rows that determine the content of a column
 MAX_SIDEWAYS_BYTES = 2**22  # of a table with a row for each channel: its cells are texts before they are numbers
 
+_RATIO_LINE = re.compile(
+    r"(?im)^[#%;\s]*((?:gear\s*|reduction\s*)?ratio|reduction|(?:über|unter)setzung)\s*[:=]\s*(?:1\s*:\s*)?(\d+(?:\.\d+)?)"
+    r"(?:\s*:\s*1)?[ \t,;]*$"
+)  # a remark of the ratio of the gear: of the other numbers in remarks none is checked
 _BEYOND_ASCII = re.compile(rb"[\x80-\xff]")
 # Of names and units in spreadsheets of Western Europe, which save text in Windows-1252.
 _LETTERS_OF_WINDOWS = {letter.encode("cp1252") for letter in "°²³·µ´äöüÄÖÜßéèêëàâáíîïóôúùûçñåÅæøÉ"}
@@ -98,6 +103,7 @@ def _read_text(path: str | Path) -> tuple[str, bytes]:
 def _csv_table(file: str, data: bytes) -> CsvTable:
     title = re.match(TITLE_LINE.encode() + rb"([^\n]*)", data)
     comment = re.match(rb"(?:(?:#[^\n]*| *)\n)*?#([^\n]*)\n(?!#)", data)
+    remarks = b"\n".join(re.findall(rb"(?m)^#[^\n]*", data[:MAX_REMARK_BYTES]))
     data = _blank_comments(data)
     if scope := scope_header(data):
         _check_names(file, [label.text for label in scope.labels])
@@ -105,6 +111,7 @@ def _csv_table(file: str, data: bytes) -> CsvTable:
         body = memoryview(data)[scope.end :]
         return CsvTable(file, "", scope.delimiter, scope.labels, body, line, line - 1, (), is_scope=True)
     above_it = data[: lines_above(data)]
+    ratios = _RATIO_LINE.findall((remarks + b"\n" + above_it).decode(errors="replace"))
     data = re.sub(rb"[^\n]+", b"", above_it) + data[len(above_it) :]
     header = re.match(rb"\n*([^\n]+)(?:\n+([^\n]+))?", data)
     if not header:
@@ -136,7 +143,8 @@ def _csv_table(file: str, data: bytes) -> CsvTable:
     if not re.search(rb"[^\n]", body):
         raise ValueError(f"{file} has a header but no rows")
     title_there = title[1].decode() if title else ""
-    return CsvTable(file, title_there, delimiter, labels, body, line, above_it.count(b"\n"))
+    singles = {one_line(name): float(value) for name, value in ratios}
+    return CsvTable(file, title_there, delimiter, labels, body, line, above_it.count(b"\n"), singles=singles)
 
 
 def _checked_text(file: str, data: bytes) -> bytes:
@@ -219,6 +227,7 @@ class CsvTable:
     above: int = 0
     left_out: Sequence[str] = ()
     is_scope: bool = False
+    singles: Mapping[str, float] = field(default_factory=dict)
 
     def numbers(self, sources: Sequence[ColumnSource]) -> dict[str, Array]:
         """The columns wanted; a cell that is no number is refused with its place."""

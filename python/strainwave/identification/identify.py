@@ -20,6 +20,7 @@ from strainwave.identification.checks.comparisons import (
     between_files,
     gravity_in_ratings,
     other_loads,
+    ratio_in_files,
     torque_scales,
     with_start_set,
 )
@@ -220,6 +221,7 @@ def identify(
     failed = {each.name for each in results if each.failed}  # a check of these numbers has failed already
     checks = (
         *(check for each in results for check in each.checks), *_nothing_determined(results),
+        *ratio_in_files(start_set, results),
         *with_start_set(start_set, parameters, failed), *gravity_in_ratings(start_set, parameters, failed),
         *between_files(parameters, results), *torque_scales(results),
     )  # fmt: skip

@@ -14,7 +14,7 @@ PARAMETERS = {
     _core.Drive: ("control", "motor", "gear", "load", "sensors", "thermal", "meter"),
     _core.Gear: (
         *("kinematics", "kinematic_error", "kinematic_noise", "stiffness", "hysteresis"),
-        *("friction_input", "friction_mesh", "friction_output", "softening", "structure", "stiffness_variation"),
+        *("friction_input", "friction_mesh", "friction_output", "softening", "structure", "stiffness_variation", "material"),
     ),
     _core.control.Sampled: ("law", "compensation"),
     _core.Compensation: ("feedforward", "learning", "observer", "dither"),

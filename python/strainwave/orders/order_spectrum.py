@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, isclose, pi, tau
+from math import isclose, pi, tau
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from strainwave import arguments, typeset
+from strainwave import _core, arguments, typeset
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import quoted
@@ -260,14 +260,7 @@ def bearing_orders(
     ball_diameter = arguments.number("ball_diameter", ball_diameter, "m", "(]", 0.0, widest)
     contact_angle = arguments.number("contact_angle", contact_angle, "rad", "[)", 0.0, pi / 2)
     outer_speed = arguments.number("outer_speed", outer_speed)
-    share = ball_diameter / pitch_diameter * cos(contact_angle)
-    passing = abs(1.0 - outer_speed)
-    return BearingOrders(
-        cage=0.5 * (1.0 - share + outer_speed * (1.0 + share)),
-        outer_ring=0.5 * balls * (1.0 - share) * passing,
-        inner_ring=0.5 * balls * (1.0 + share) * passing,
-        ball=0.5 * pitch_diameter / ball_diameter * (1.0 - share**2) * passing,
-    )
+    return BearingOrders(*_core.bearing_orders(balls, ball_diameter, pitch_diameter, contact_angle, outer_speed))
 
 
 def _turned(recording: Recording, column: str, angle: str) -> tuple[Array, Array]:

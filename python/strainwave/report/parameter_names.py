@@ -10,7 +10,7 @@ from strainwave.identification.results.file_result import FileEstimate
 EFFECTS = {  # of a gear and its drive, with the beginnings of the paths of their parameters
     "Friction": ("gear.friction",),
     "Stiffness": ("gear.stiffness", "gear.structure", "gear.softening"),
-    "Hysteresis and damping": ("gear.hysteresis", "gear.damping"),
+    "Hysteresis and damping": ("gear.hysteresis", "gear.damping", "gear.material"),
     "Kinematic error": ("gear.kinematic_error", "gear.kinematic_noise"),
     "Load": ("load",),
 }

@@ -33,11 +33,12 @@ from strainwave.rig.report.files import files_of, loop_names
 from strainwave.rig.report.influence import influence_report, summary as trend_lines
 from strainwave.rig.report.live import Terminal, live
 from strainwave.rig.report.page import summary
-from strainwave.rig.running.guide import Device, Filled, PictureSource, Settling, conduct, done_before
+from strainwave.rig.running.guide import Device, Filled, Frames, PictureSource, Settling, conduct, done_before
 from strainwave.rig.running.plan import Pans, Plan, plan
 from strainwave.rig.running.watching import Reader, Watch
 from strainwave.rig.virtual.printed import ARTICLE, gear_named, narrower
 from strainwave.rig.virtual.test import Virtual, rehearsal, simulate_test
+from strainwave.rig.vision.image import imageio_arrays
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -47,6 +48,7 @@ app = typer.Typer(cls=Verbs, add_completion=False, rich_markup_mode=None)
 
 MAX_SECONDS = 1e6  # of any time that is waited
 MAX_PICTURES = 1000  # that must agree
+IMAGEIO = "imageio:"  # begins the name of a camera that imageio opens
 
 RigOption = Annotated[str, typer.Option("--rig", help="The rig: a name that comes with the package, or a .toml file.")]
 
@@ -148,7 +150,10 @@ def simulate(
 @with_groups
 def measure(
     camera: Annotated[
-        str, typer.Option(help="Number of a camera, a folder that another program fills with photographs, or virtual.")
+        str,
+        typer.Option(
+            help="Number of a camera, imageio:<video0>, a folder that another program fills with photographs, or virtual."
+        ),
     ],
     out: Annotated[Path, folder("Folder of the test; one that was broken off goes on.")] = Path("out/rig-test"),
     name: Annotated[
@@ -361,6 +366,8 @@ def _source(camera: str, bench: Rig, steps: tuple[Step, ...], gear: str) -> Pict
     if camera == "virtual":
         return rehearsal(bench, steps, gear_named(gear))
     try:
+        if camera.startswith(IMAGEIO):
+            return Frames(camera, imageio_arrays(camera.removeprefix(IMAGEIO)))
         return Device(int(camera)) if re.fullmatch("[0-9]{1,4}", camera) else Filled(Path(camera))
     except ImportError as error:
         raise ValueError(f"--camera {camera}: {error}") from None

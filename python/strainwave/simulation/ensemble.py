@@ -50,11 +50,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 COUNTED_NAMES = {
-    field["name"]
-    for kinds in _core.families.values()
-    for kind in kinds.values()
-    for field in kind.fields
-    if field["kind"] == "count"
+    field["name"] for kinds in _core.families.values() for kind in kinds.values() for field in kind.fields if field["whole"]
 }  # names of numbers that are counted
 MAX_THREADS = 2**31 - 1  # that the core can count
 MAX_MEMBERS = 100_000_000  # of one call: their parameters alone take gigabytes
@@ -175,8 +171,9 @@ class Ensemble(ComparedByFields, Pictured):
         >>> import tempfile
         >>> import strainwave as sw
         >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+        >>> step, varied = sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.02]}
         >>> with tempfile.TemporaryDirectory() as folder:
-        ...     _ = sw.simulate_to(f"{folder}/runs", drive, sw.scenario.step(5.0, duration=0.1), {"load.inertia": [0.01, 0.02]})
+        ...     _ = sw.simulation.simulate_to(f"{folder}/runs", drive, step, varied)
         ...     runs = sw.Ensemble.read(f"{folder}/runs")
         >>> runs["torque"].shape
         (2, 501)
@@ -468,8 +465,9 @@ def simulate_to(
     >>> import tempfile
     >>> import strainwave as sw
     >>> drive = sw.Drive(load=sw.loads.Inertia(inertia=0.01))
+    >>> step, varied = sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = sw.simulate_to(folder, drive, sw.scenario.step(5.0, 0.1), {"load.inertia": [0.01, 0.02]}, sample=1e-2)
+    ...     _ = sw.simulation.simulate_to(folder, drive, step, varied, sample=1e-2)
     ...     sw.Ensemble.read(folder)["torque"].shape
     (2, 11)
     """
@@ -539,7 +537,7 @@ def _checked(drive: Drive, parameters: Mapping[str, ArrayLike]) -> tuple[list[in
             limits = lowest + (", inf)" if high == np.inf else f", {high:g}]")  # in the notation of the models
             value = f"{values[path][wrong[0]]:g}" + (f" {number.unit}" if number.unit != "1" else "")
             raise ValueError(f"{path} = {value} of member {wrong[0]} must lie in {limits}")
-        if path.rpartition(".")[2] in COUNTED_NAMES and (broken := np.flatnonzero(values[path] % 1.0)).size:
+        if path.rpartition(".")[2].partition("[")[0] in COUNTED_NAMES and (broken := np.flatnonzero(values[path] % 1.0)).size:
             raise ValueError(f"{path} = {values[path][broken[0]]:g} of member {broken[0]} must be a whole number")
     if len({len(column) for column in values.values()}) > 1:
         counts = ", ".join(f"{path} {len(column)}" for path, column in values.items())

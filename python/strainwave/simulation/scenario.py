@@ -313,11 +313,14 @@ class Scenario(Pictured):
         Args:
             name: of what it commands
             unit: of that
+
+        Raises:
+            TypeError: one of them is no text
         """
         from strainwave.drawing.simple import Series, curve_figure
 
-        times, values = self._drawn
-        return curve_figure(f"{name.capitalize()} over time", Series("time", "s", times), Series(name, unit, values))
+        (times, values), title = self._drawn, f"{arguments.text('name', name).capitalize()} over time"
+        return curve_figure(title, Series("time", "s", times), Series(name, arguments.text("unit", unit), values))
 
 
 def constant(value: float | str, duration: float | str) -> Scenario:

@@ -19,7 +19,7 @@ from strainwave.messages import listed, quoted
 PAGES = {  # of the studio, besides those of the workbench, with their verbs
     "Identify": ("identify", "predict", "orders", "plan"),
     "Compensate": ("compensate",),
-    "Faults": ("diagnose joint", "diagnose limit", "diagnose misalignment"),
+    "Faults": ("diagnose joint", "diagnose limit", "diagnose wear", "diagnose misalignment"),
     "Compare": ("compare",),
 }
 SETS = ("gear", "drive", "start", "first", "second")  # parameters that take a set by name, or a file

@@ -161,12 +161,14 @@ def conditions(
 
 
 def depends_on_temperature(drive: Drive) -> bool:
-    """True if friction or spring of a gear change with its temperature."""
+    """True if friction, spring or kinematic error of a gear change with its temperature."""
     cold, warm = (
         steady_torque(drive.gear, SPEED_OF_FRICTION, temperature=each).friction for each in OTHER_TEMPERATURES.values()
     )
     return bool(cold != warm) or any(
-        number.value and number.unit == "1/K" for path, number in every(drive).items() if path.startswith("gear.softening")
+        number.value and number.unit in ("1/K", "rad/K")
+        for path, number in every(drive).items()
+        if path.startswith(("gear.softening", "gear.kinematic_error"))
     )
 
 

@@ -29,9 +29,8 @@ def spring(kind: int, twist: Array) -> Array:
     return np.asarray(STIFFNESS * np.sign(twist) * (size + more))
 
 
-def slipping(twist: Array) -> Array:
+def slipping(twist: Array, stiffness: float, breakaway: float) -> Array:
     """Return the torque of an element of Maxwell slip [N.m]."""
-    stiffness, breakaway = ELEMENT
     torque = np.zeros_like(twist)
     for place, step in enumerate(np.diff(twist), 1):
         torque[place] = np.clip(torque[place - 1] + stiffness * step, -breakaway, breakaway)
@@ -43,7 +42,7 @@ def measured(seed: int) -> tuple[Recording, float]:
     random = np.random.default_rng(seed)
     factor = 1.0 if seed % 2 else float(np.exp(random.choice([-1.0, 1.0]) * random.uniform(0.05, 0.5)))
     twist = HALF * np.sin(np.linspace(0.0, 4.0 * np.pi, 600)) + 0.3 * HALF * (seed % 5 == 0)
-    torque = spring(seed % 3, twist) * np.where(twist < 0.0, factor, 1.0) + slipping(twist)
+    torque = spring(seed % 3, twist) * np.where(twist < 0.0, factor, 1.0) + slipping(twist, *ELEMENT)
     torque += NOISE * (1.0 + random.normal(size=len(twist)))
     return Recording({"twist": twist + 1e-5 * random.normal(), "torque": torque}, {"twist": "rad", "torque": "N.m"}), factor
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from math import cos, pi, sin, sqrt
 from typing import Any
 
@@ -242,3 +243,16 @@ def test_a_difference_in_one_line(difference: Difference, text: str) -> None:
 
 def test_an_agreement_in_one_line() -> None:
     assert str(Agreement("a", "rad", 0.1, 0.2, 3.0, 0.5, 7)) == "a: rms 0.1 rad, largest 0.2 rad at t = 3 s, correlation 0.5"
+
+
+def test_phases_are_within_half_a_turn_and_a_whole_turn_is_no_difference() -> None:
+    def gear(*phase: float) -> sw.Gear:
+        error = sw.kinematic_error.Fourier(order=[1.0, 2.0], amplitude=[1e-4, 2e-4], phase=phase)
+        return sw.Gear(kinematic_error=error)
+
+    assert compare(gear(0.3, 7.0), gear(0.3 + 2.0 * pi, 7.0 - 4.0 * pi)) == []
+    (difference,) = compare(gear(0.3, 3.1), gear(0.3, -3.1))
+    assert (difference.first, difference.second, difference.change) == (pytest.approx(3.1), pytest.approx(-3.1), None)
+    assert replace(difference, sigma=0.1).deviations == pytest.approx((2.0 * pi - 6.2) / 0.1)
+    (difference,) = compare(gear(0.3, -pi), gear(0.3, 9.0))
+    assert (difference.first, difference.second) == (pytest.approx(pi), pytest.approx(9.0 - 2.0 * pi))

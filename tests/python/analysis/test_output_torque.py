@@ -57,7 +57,7 @@ def angles() -> tuple[Array, Array, Array]:
 
 def test_it_is_that_of_the_brute_force(angles: tuple[Array, Array, Array]) -> None:
     twist, of_input, of_output = angles
-    found = sw.output_torque(GEAR, of_input, of_output, zero=ZERO)
+    found = sw.analysis.output_torque(GEAR, of_input, of_output, zero=ZERO)
     assert found.twist == pytest.approx(twist, abs=1e-12)
     assert found.torque == pytest.approx(brute_force(twist), abs=1e-7)
     assert np.isnan(found.sigma).all()
@@ -65,7 +65,7 @@ def test_it_is_that_of_the_brute_force(angles: tuple[Array, Array, Array]) -> No
 
 def test_with_the_time_the_damping_counts(angles: tuple[Array, Array, Array]) -> None:
     _, of_input, of_output = angles
-    plain, damped = (sw.output_torque(GEAR, of_input, of_output, zero=ZERO, time=time).torque for time in (None, TIME))
+    plain, damped = (sw.analysis.output_torque(GEAR, of_input, of_output, zero=ZERO, time=time).torque for time in (None, TIME))
     rate = 1.2e-3 * 5.0 * np.cos(5.0 * TIME) + 3e-4 * 31.0 * np.cos(31.0 * TIME)
     assert damped[1:-1] - plain[1:-1] == pytest.approx((DAMPING * rate)[1:-1], abs=2e-4)
 
@@ -80,11 +80,11 @@ def test_its_standard_deviation_is_that_of_drawn_gears(angles: tuple[Array, Arra
     paths = ["gear.stiffness.k1", "gear.stiffness.k2", "gear.stiffness.t1", "gear.hysteresis.stiffness[0]",
              "gear.hysteresis.breakaway[0]"]  # fmt: skip
     gear_set = replace(sw.GearSet.of(GEAR, name="x", source="x"), covariance=Covariance(tuple(paths), covariance.tolist()))
-    found = sw.output_torque(gear_set, of_input, of_output, zero=ZERO)
+    found = sw.analysis.output_torque(gear_set, of_input, of_output, zero=ZERO)
     middle = np.array([SPRING["k1"], SPRING["k2"], SPRING["t1"], 5000.0, 0.6])
     drawn = np.random.default_rng(3).multivariate_normal(middle, covariance, 150)
     expected = np.std([brute_force(twist[::8], **dict(zip(names, each, strict=True))) for each in drawn], axis=0)
-    coarse = sw.output_torque(gear_set, of_input[::8], of_output[::8], zero=ZERO).sigma
+    coarse = sw.analysis.output_torque(gear_set, of_input[::8], of_output[::8], zero=ZERO).sigma
     large = expected > 0.3 * expected.max()
     assert np.median(coarse[large] / expected[large]) == pytest.approx(1.0, abs=0.1)
     assert np.isfinite(found.sigma).all()
@@ -102,4 +102,4 @@ def test_its_standard_deviation_is_that_of_drawn_gears(angles: tuple[Array, Arra
 def test_what_is_wrong_is_refused(changed: dict[str, Any], words: str) -> None:
     given = {"gear": GEAR, "input_angle": np.zeros(2), "output_angle": np.zeros(2)} | changed
     with pytest.raises(ValueError, match=words):
-        sw.output_torque(**given)
+        sw.analysis.output_torque(**given)

@@ -417,3 +417,11 @@ def test_without_a_verb_help_is_shown(tmp_path: Path) -> None:
 def test_a_file_in_the_place_of_the_gear_is_named(tmp_path: Path) -> None:
     (tmp_path / "friction.csv").write_text("speed [rad/s],torque [N.m]\n1,2\n")
     refused(tmp_path, ["identify", "friction.csv"], "friction.csv is a file, where the gear is asked for", "list gears")
+
+
+def test_a_name_that_is_too_long_is_refused_with_a_remedy(tmp_path: Path) -> None:
+    refused(
+        tmp_path,
+        ("identify", "csg-20-100", "x" * 300 + ".csv"),
+        "file name too long; a file may have 255 bytes in its name, not 304",
+    )

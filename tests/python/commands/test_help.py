@@ -19,6 +19,7 @@ from strainwave.workbench.page import is_installed
 from tests.python.command import strainwave
 
 TUTORIALS = Path(__file__).parents[3] / "examples" / "tutorials"
+WEAR = "work [kJ],play [arcmin],stiffness [N.m/rad]\n0,0.34,20100\n1000,0.46,19800\n2000,0.55,19500\n"
 MOVE = 'duration = 0.2\n[command]\nkind = "ramp"\nrate = 0.5\n'
 # Command whose result other examples of a room read.
 FIRST = {"rig": "rig simulate --positions 0 --out rehearsal"}
@@ -85,6 +86,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "plan.toml").write_text(plan.replace("number = 60", "number = 100"))  # enough for a classifier
     (folder / "series.csv").write_text("torque_max [N.m],area [J]\n30,0.09\n45,0.2\n60,0.36\n75,0.56\n")
     (folder / "move.toml").write_text(MOVE)
+    (folder / "wear.csv").write_text(WEAR)
     made = strainwave(*["identify", "hfuc-20-80", "robot_log.csv", "--constant", "torque_constant=0.0755"], folder=folder)
     assert made.returncode == 0, made.stderr
     shutil.copy(folder / "out" / "identify" / "gear.toml", folder)

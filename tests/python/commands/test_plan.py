@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 import strainwave as sw
 
@@ -66,3 +67,17 @@ def test_what_makes_no_plan_is_refused_in_words_of_the_command(tmp_path: Path, o
 def test_a_limit_that_no_rating_states_is_asked_for(tmp_path: Path) -> None:
     said = strainwave("plan", "hfuc-50-120", *FRICTION, folder=tmp_path)
     assert said.stderr.startswith("strainwave: --speed-limit is needed for friction")
+
+
+def test_loops_that_were_measured_lead_to_those_that_separate_their_sources(tmp_path: Path) -> None:
+    elastic = 40.0 * np.sin(np.linspace(0.5, 4.5, 801) * np.pi)
+    torque = elastic + (1.2 + 0.04 * np.abs(elastic)) * np.sign(np.gradient(elastic))
+    torque += 0.02 * np.random.default_rng(0).normal(size=801)
+    columns = np.column_stack([100.0 * elastic / 3e4, torque / 100.0])
+    header = "input_angle [rad],input_torque [N.m]"
+    np.savetxt(tmp_path / "loop.csv", columns, delimiter=",", header=header, comments="")
+    said = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "loop.csv", folder=tmp_path)
+    assert "at the output with the input" in said.stdout
+    assert "bearing, dry" in said.stdout
+    refused = strainwave("plan", "hfuc-25-100", "--want", "bearing", "--loop", "loop.csv", folder=tmp_path)
+    assert '"bearing" is no source of these loops' in refused.stderr

@@ -185,3 +185,61 @@ def test_the_plan_of_a_population_is_untouched_by_one_member() -> None:
     made = shards(SMALL)
     made.member(1)
     assert made.plan == DatasetPlan.of(SMALL)
+
+
+WORN = changed(
+    drive="space-pointing-joint",
+    simulation={"duration": 0.2, "dt": 5e-4, "sample": 2e-3},
+    units={"number": 3, "spread": {"load.inertia": {"low": 4.0, "high": 6.0}}},
+    life={"stages": 3, "runs": 2e6},
+    faults=[
+        {
+            "kind": "tooth_wear",
+            "share": 1.0,
+            "onset": {"law": "growing", "numbers": {"scale": 1e6}, "words": {"unit": "transmitted_work"}},
+        }
+    ],
+    conditions=[{"profile": "constant_speed", "numbers": {"speed": 0.1}, "load_torque": load} for load in (1.0, 4.0)],
+    features={},
+)
+
+
+def test_wear_grows_with_the_work_of_the_own_run_of_each_member() -> None:
+    """The work of a healthy run by the general drive, one by one, stands against that of all units together."""
+    made = population(WORN)
+    assert shards(WORN).column_units()["usage"] == "J"
+    last = {}
+    for number, load in enumerate((1.0, 4.0)):
+        table = made.members(9 * number, 9 * number + 9)
+        assert table.usage[::3].tolist() == [0.0, 0.0, 0.0]
+        assert table.usage[1::3] == pytest.approx(0.5 * table.usage[2::3])
+        assert table.severity["tooth_wear"] == pytest.approx(np.minimum(table.usage / 1e6, 1.0))
+        own = [
+            sw.simulate(
+                made.drive.replace({"load.inertia": float(table.parameters["load.inertia"][3 * unit])}),
+                table.condition.command, 5e-4, sample=2e-3, load_torque=load,
+            )
+            for unit in range(3)
+        ]  # fmt: skip
+        work = [sw.diagnose.transmitted_work(each) for each in own]
+        assert table.usage[2::3] == pytest.approx(2e6 * np.array(work), rel=1e-9)
+        assert len(set(table.usage[2::3].tolist())) == 3
+        last[load] = table
+    assert (last[4.0].usage[2::3] > last[1.0].usage[2::3]).all()
+    clearance = "gear.stiffness.clearance"
+    assert last[1.0].parameters[clearance] == pytest.approx(3e-4 * last[1.0].severity["tooth_wear"])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"life": {"stages": 3, "runs": 1e6, "usage": 1.0}}, "usage and runs are given"),
+        (
+            {"faults": [*WORN["faults"], {"kind": "lubrication_loss", "share": 0.0, "onset": FAULTY["faults"][0]["onset"]}]},
+            "onset.words.unit is output_revolutions, transmitted_work; all onsets of a plan count usage in one unit",
+        ),
+    ],
+)
+def test_a_usage_in_two_measures_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        population(WORN | changes).check()

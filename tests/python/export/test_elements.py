@@ -9,6 +9,8 @@ from hypothesis import given, strategies as st
 from strainwave.export.elements import GearElements, Spring, friction_losses
 from strainwave.tuning.loss import ExportLoss
 
+from tests.support.strategies import made
+
 hysteresis, stiffness = sw.hysteresis, sw.stiffness
 MAX_TORQUE, MAX_SPEED = 40.0, 200.0
 
@@ -105,6 +107,16 @@ def test_what_has_no_element_is_named_with_its_size():
     (words,) = elements(sw.Gear(kinematic_error=error)).left_out
     assert words.startswith("kinematic error: 100 urad")
     assert "0.008 N.m" in words  # 2 * 1e-4 * 40 N.m
+
+
+def test_modes_of_the_ring_have_no_element():
+    ring = sw.ring.Modes(natural_frequency=[3000.0], waves=[2], damping=[0.02], mass=[0.3])
+    stages = made(sw.structure.Staged)
+    left_out = [
+        elements(sw.Gear(structure=structure, input_inertia=1e-5)).left_out for structure in (stages, stages.replace(ring=ring))
+    ]
+    assert left_out[0] == ("stages of the compliance",)
+    assert left_out[1] == ("stages of the compliance", "resonances of the flexspline's ring")
 
 
 def test_a_gear_without_rating_needs_a_torque():

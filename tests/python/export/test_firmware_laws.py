@@ -41,6 +41,7 @@ CHANGED: dict[str, dict[str, Any]] = {
     "tooth_errors": {"flexspline_amplitude": [1e-5], "flexspline_phase": [0.0], "circular_spline_deviation": 1e-6},
     "temperature_dependent": {"law": sw.kinematic_error.Fourier(**HARMONICS)},
     "scaled": {"law": sw.kinematic_error.Fourier(**HARMONICS)},
+    "micro_slip": {"excitation": 0.1, "friction": 2.0, "load_share": 0.3},
     "stochastic": {"amplitude": 2e-5, "load_sensitivity": 0.1, "speed_sensitivity": 0.01},
 }  # fmt: skip
 PLACES = {

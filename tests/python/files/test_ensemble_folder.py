@@ -41,7 +41,7 @@ def small_parts(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def simulate(folder: Path) -> None:
-    sw.simulate_to(folder, DRIVE, COMMAND, INERTIA, **OTHERS)
+    sw.simulation.simulate_to(folder, DRIVE, COMMAND, INERTIA, **OTHERS)
 
 
 def whole() -> sw.Ensemble:
@@ -137,7 +137,7 @@ def test_a_part_under_another_number_is_refused(written: Path, tmp_path: Path) -
 
 
 def test_a_part_of_another_ensemble_is_refused(written: Path, tmp_path: Path) -> None:
-    sw.simulate_to(tmp_path, DRIVE, 2.0 * COMMAND, INERTIA, **OTHERS)
+    sw.simulation.simulate_to(tmp_path, DRIVE, 2.0 * COMMAND, INERTIA, **OTHERS)
     for kind in ("samples", "members"):
         other = (tmp_path / kind / PARTS[1]).read_bytes()
         with_bytes(
@@ -204,11 +204,11 @@ def test_members_that_failed_are_told_by_the_run_that_finishes_too(tmp_path: Pat
     arguments: tuple[Any, ...] = (tmp_path, DRIVE, COMMAND, values)
     words = r"^1 of 10 members have no result; the first is member 9: dt = 0\.0002 s is too coarse"
     with pytest.warns(EnsembleWarning, match=words):
-        sw.simulate_to(*arguments, **OTHERS)
+        sw.simulation.simulate_to(*arguments, **OTHERS)
     (tmp_path / "samples" / PARTS[0]).unlink()
     assert set(sw.Ensemble.read_partial(tmp_path).failures) == set(range(8)) | {9}
     with pytest.warns(EnsembleWarning, match=words):
-        sw.simulate_to(*arguments, **OTHERS)
+        sw.simulation.simulate_to(*arguments, **OTHERS)
     assert list(sw.Ensemble.read(tmp_path).failures) == [9]
 
 
@@ -322,7 +322,7 @@ def test_another_ensemble_in_the_folder_is_refused_by_what_differs(changes: dict
     before = contents(written)
     asked = {"drive": DRIVE, "command": COMMAND, "parameters": INERTIA} | OTHERS | changes
     with pytest.raises(FileExistsError, match=r"^[^\n]* holds another ensemble: [^\n]*; take another folder$") as refusal:
-        sw.simulate_to(written, **asked)
+        sw.simulation.simulate_to(written, **asked)
     assert words in str(refusal.value)
     assert contents(written) == before
 
@@ -337,7 +337,7 @@ def test_the_same_said_otherwise_is_the_same_ensemble(written: Path) -> None:
     before = contents(written)
     parameters = {"load.inertia": INERTIA["load.inertia"].tolist()}
     others = OTHERS | {"dt": np.float64(2e-4), "load_torque": 0, "record": ("torque",), "threads": 2}
-    sw.simulate_to(str(written), DRIVE.replace(), sw.scenario.step(5.0, 0.004), parameters, **others)
+    sw.simulation.simulate_to(str(written), DRIVE.replace(), sw.scenario.step(5.0, 0.004), parameters, **others)
     assert contents(written) == before
 
 

@@ -28,7 +28,8 @@ def filled(model: Any) -> Any:
     """A model in which no sequence is empty: one without numbers might do nothing, and need no table."""
     if hasattr(model, "law"):
         return made(model)
-    return made(model, **{field["name"]: [fitting(field)] for field in model.fields if field["kind"] == "sequence"})
+    count = 2 if model is sw.kinematic_error.ToothErrors else 1  # a flank has a beginning and an end
+    return made(model, **{field["name"]: count * [fitting(field)] for field in model.fields if field["kind"] == "sequence"})
 
 
 def with_law(**parts: Any) -> sw.Drive:
@@ -69,9 +70,10 @@ def without(text: str, table: str, name: str) -> str:
 # By default a motor is healthy: its file need not deny each fault.
 MAY_BE_LEFT_OUT = {
     "dc": {"cogging_torque", "cogging_order"},
-    "brushless_dc": {"cogging_torque", "cogging_order"},
+    "brushless_dc": {"cogging_torque", "cogging_order", "open_share", "shorted_share"},
     "cyclic": {"viscous_share", "detent_order", "detent_torque", "detent_phase"},
-    "pmsm": {"phase_resistance_excess", "dead_time_voltage", "dead_time_current"},
+    "pmsm": {"phase_resistance_excess", "dead_time_voltage", "dead_time_current", "open_share", "shorted_share"},
+    "tooth_errors": {"flank_deviation"},
 }
 
 

@@ -18,8 +18,8 @@ LAWS = (
 )
 PARTS = (
     "name, maker, note, ratings, covariance, validation, kinematics, kinematic_error, kinematic_noise, stiffness, hysteresis, "
-    "friction_input, friction_mesh, friction_output, softening, stiffness_variation, structure, gear, motor, control, load, "
-    "sensors, thermal, meter"
+    "friction_input, friction_mesh, friction_output, softening, stiffness_variation, structure, material, gear, motor, "
+    "control, load, sensors, thermal, meter"
 )
 HYSTERESIS = """
 [hysteresis]

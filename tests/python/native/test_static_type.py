@@ -88,7 +88,8 @@ def test_the_type_is_that_of_the_laws() -> None:
         "strainwave::hysteresis::Preisach<float, strainwave::hysteresis::PowerDensity<float>>, "
         "strainwave::friction::Thermal<float, strainwave::friction::LuGre<float>>, strainwave::friction::Viscous<float>, "
         "strainwave::friction::Viscous<float>, strainwave::softening::ThermalSoftening<float>, "
-        "strainwave::structure::Lumped<float>, strainwave::variation::Constant<float>>, strainwave::load::Pendulum<float>, "
+        "strainwave::structure::Lumped<float>, strainwave::variation::Constant<float>, strainwave::material::Elastic<float>>, "
+        "strainwave::load::Pendulum<float>, "
         "strainwave::Sensors<float, strainwave::sensor::Ideal<float>>, strainwave::thermal::Isothermal<float>, "
         "strainwave::meter::EnergyMeter<float>>"
     )
@@ -104,8 +105,9 @@ def test_laws_of_one_role_are_named_once_if_they_are_alike() -> None:
     assert static_type(sw.Sensors()) == f"strainwave::Sensors<S, {ideal}>"
     assert static_type(sw.Sensors(**sensors)) == f"strainwave::Sensors<S, {', '.join([*5 * [ideal], gain])}>"
     periodic, constant = "strainwave::variation::Periodic<S>", "strainwave::variation::Constant<S>"
+    rigid = "strainwave::ring::Rigid<S>"
     staged = made(sw.structure.Staged, coupling_variation=made(sw.variation.Periodic))
-    assert static_type(staged) == f"strainwave::structure::Staged<S, {', '.join([periodic, *3 * [constant]])}>"
+    assert static_type(staged) == f"strainwave::structure::Staged<S, {', '.join([rigid, periodic, *3 * [constant]])}>"
 
 
 @pytest.mark.parametrize(

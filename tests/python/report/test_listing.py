@@ -27,9 +27,14 @@ DRIVE = sw.Drive(gear=GEAR, motor=sw.motor.TorqueSource(inertia=1.5e-4), load=sw
 SET = sw.GearSet.of(DRIVE, name="Bench", source="measured")
 LIMIT = Quantity(value=20.0, unit="N.m", source="maker")
 COGGING = ("motor.cogging_torque", "motor.cogging_order")
+LOST_SETS = ("motor.open_share", "motor.shorted_share")
 PHASES = ("motor.phase_resistance_excess", "motor.dead_time_voltage", "motor.dead_time_current")
 # What a file may leave out of a motor, because it has no effect by default.
-FAULT_NUMBERS: dict[Any, tuple[str, ...]] = {sw.motor.DC: COGGING, sw.motor.BrushlessDC: COGGING, sw.motor.PMSM: PHASES}
+FAULT_NUMBERS: dict[Any, tuple[str, ...]] = {
+    sw.motor.DC: COGGING,
+    sw.motor.BrushlessDC: COGGING + LOST_SETS,
+    sw.motor.PMSM: PHASES + LOST_SETS,
+}
 
 
 def line_of(text: str, name: str) -> str:

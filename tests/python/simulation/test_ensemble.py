@@ -240,7 +240,7 @@ def test_an_unknown_instruction_set_is_refused_with_those_that_run_here() -> Non
 def test_what_makes_no_sense_is_refused(parameters: dict[str, Any], others: dict[str, Any], words: str, tmp_path: Path) -> None:
     runs: tuple[Callable[[], object], ...] = (
         lambda: sw.simulate_many(DRIVE, command(0.01), parameters, **others),
-        lambda: sw.simulate_to(tmp_path / "runs", DRIVE, command(0.01), parameters, **others),
+        lambda: sw.simulation.simulate_to(tmp_path / "runs", DRIVE, command(0.01), parameters, **others),
     )
     for run in runs:
         with pytest.raises(ValueError, match=words):
@@ -324,7 +324,7 @@ def test_a_member_that_fails_is_told_and_disturbs_no_other(
     with pytest.raises(TypeError, match=r"^member must be a whole number, not 9\.0$"):
         runs.member(9.0)  # type: ignore[arg-type]
     with pytest.warns(EnsembleWarning, match=r"^3 of 19 members have no result; the first is member 3: "):
-        sw.simulate_to(tmp_path / "runs", *arguments)
+        sw.simulation.simulate_to(tmp_path / "runs", *arguments)
     assert same_bits(sw.Ensemble.read(tmp_path / "runs"), runs)
 
 
@@ -365,7 +365,7 @@ def test_progress_counts_the_steps_of_all_members(monkeypatch: pytest.MonkeyPatc
     assert 0.0 <= shares[0] < shares[-1] <= 1.0
     shares.clear()
     monkeypatch.setattr(ensemble, "PART_BYTES", 600 * 3 * 8)
-    sw.simulate_to(tmp_path / "runs", DRIVE, command(2.0), parameters, **others)
+    sw.simulation.simulate_to(tmp_path / "runs", DRIVE, command(2.0), parameters, **others)
     assert shares == sorted(shares)
     assert shares[0] < 0.5 <= shares[-1] <= 1.0
 
@@ -390,7 +390,7 @@ from strainwave.simulation import ensemble
 from tests.python.simulation.test_ensemble import DRIVE, INERTIA, RISE
 import strainwave as sw
 ensemble.PART_BYTES = 1
-sw.simulate_to(sys.argv[1], DRIVE, RISE, {"load.inertia": INERTIA}, threads=1)
+sw.simulation.simulate_to(sys.argv[1], DRIVE, RISE, {"load.inertia": INERTIA}, threads=1)
 """
 
 
@@ -428,14 +428,14 @@ def test_what_is_read_from_files_is_what_would_have_been_in_memory(
     arguments: dict[str, Any] = {"record": ["output_speed", "command"], "sample": 1e-3, "threads": 2}
     whole = sw.simulate_many(drive, SWING, varied(37), 5e-4, **arguments)
     monkeypatch.setattr(ensemble, "PART_BYTES", 1)
-    assert sw.simulate_to(str(tmp_path), drive, SWING, varied(37), 5e-4, **arguments) == tmp_path
+    assert sw.simulation.simulate_to(str(tmp_path), drive, SWING, varied(37), 5e-4, **arguments) == tmp_path
     assert [part.name for part in sorted((tmp_path / "samples").iterdir())] == [f"part-{i:06d}.parquet" for i in range(3)]
     assert same_bits(sw.Ensemble.read(tmp_path), whole)
 
 
 def test_files_are_read_by_what_reads_folders_of_parquet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ensemble, "PART_BYTES", 1)
-    sw.simulate_to(tmp_path, DRIVE, RISE, varied(20), record=["torque", "twist"], sample=1e-2, threads=1)
+    sw.simulation.simulate_to(tmp_path, DRIVE, RISE, varied(20), record=["torque", "twist"], sample=1e-2, threads=1)
     whole = sw.simulate_many(DRIVE, RISE, varied(20), record=["torque", "twist"], sample=1e-2)
     samples = dataset.dataset(tmp_path / "samples").to_table()
     assert samples.schema.names == ["member", "time", "torque", "twist"]
@@ -454,7 +454,7 @@ def test_files_are_read_by_what_reads_folders_of_parquet(tmp_path: Path, monkeyp
 def test_a_folder_that_is_not_empty_is_refused_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(FileExistsError, match=r" is not empty; take another folder, or move what is there$"):
-        sw.simulate_to(tmp_path, DRIVE, RISE, varied())
+        sw.simulation.simulate_to(tmp_path, DRIVE, RISE, varied())
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
@@ -473,7 +473,7 @@ from strainwave.simulation.signals import outputs
 ensemble.PART_BYTES = 1 << 20
 for members in (256, 2048):
     with tempfile.TemporaryDirectory() as folder:
-        sw.simulate_to(folder + "/runs", DRIVE, RISE, varied(members), record=OUTPUTS, threads=1)
+        sw.simulation.simulate_to(folder + "/runs", DRIVE, RISE, varied(members), record=OUTPUTS, threads=1)
     print(most_memory())
 """
 
@@ -500,6 +500,6 @@ def test_memory_does_not_grow_with_the_members() -> None:
 
 def test_parts_hold_whole_packs_for_every_thread(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(ensemble, "PART_BYTES", 8 * 3 * 501 * 50)  # 50 members fit
-    sw.simulate_to(tmp_path, DRIVE, RISE, varied(100), threads=3)
+    sw.simulation.simulate_to(tmp_path, DRIVE, RISE, varied(100), threads=3)
     counts = [len(dataset.dataset(part).to_table()) for part in sorted((tmp_path / "members").iterdir())]
     assert counts == [48, 48, 4]

@@ -86,7 +86,7 @@ constexpr State at_joint(const Compiled& drive, const Input& u) {
         const S angle = ratio * (u.load + x.continuous.transmission_error);
         x.turns = strainwave::rint(angle / S(2.0 * strainwave::pi));
         x.continuous.input_angle = angle - x.turns * S(2.0 * strainwave::pi);
-        drive.settle_gear(x, drive.geometry(x, x.continuous), S(0.0), S(0.0), u.temperature);
+        drive.settle_gear(x, drive.geometry(x, x.continuous, u), S(0.0), S(0.0), u.temperature);
     }
     x.continuous.sensors = drive.sensors.steady_state(drive.measurable(x, x.continuous, u, S(0.0)));
     return drive.consistent(x);

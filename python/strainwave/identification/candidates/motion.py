@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, friction, loads
+from strainwave.analysis.torsion_loop import series_compliance
 from strainwave.identification.candidates.motion_candidate import GRAVITY_PATHS, MAX_ERROR, MotionCandidate, candidate_of
 from strainwave.identification.candidates.motion_model import (
     BREAKAWAY_FOLLOWS,
@@ -45,7 +46,6 @@ from strainwave.identification.candidates.plain import (
 )
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
 from strainwave.identification.experiments.motion_log import MIN_INERTIA, MIN_INERTIA_SHARE, MotionLog, inertia_of, per_torque
-from strainwave.identification.experiments.torsion_loop import series_compliance
 
 Array = NDArray[np.float64]
 Rows = NDArray[np.bool_]

@@ -140,9 +140,10 @@ def _constant(time: Array, angle: Array, piece: slice) -> slice | None:
 def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: Array) -> Levels:
     """Return the level of the torque of each stretch, with gravity over the angle taken out if the stretches determine it.
 
-    Gravity is one wave over the angle for all stretches: their angles must count from one zero. Short stretches at one place
-    determine only the sum of gravity and of a friction that differs between the directions. Therefore levels at equal speeds
-    both ways are taken to be equal within 10 % (assumed).
+    Gravity is one wave over the angle for all stretches: their angles must count from one zero. Friction may vary over the
+    angle, too, so that motion one way does not separate them. Short stretches at one place determine only the sum of gravity
+    and of a friction that differs between the directions. Therefore levels at equal speeds both ways are taken to be equal
+    within 10 % (assumed).
 
     Args:
         torques: of each stretch [N.m]
@@ -150,13 +151,13 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
         speeds: of each stretch, with its sign [rad/s], shape (n,)
     """
     shorter = [_shorter(torque, angle) for torque, angle in zip(torques, angles, strict=True)]
-    alone, before = _means(torques), [torque - torque.mean() for torque, _ in shorter]
+    alone = _means(torques)
     measured_angles = [angle for _, angle in shorter if angle is not None]
     if len(measured_angles) < len(shorter) or np.ptp(np.concatenate(measured_angles)) < MIN_GRAVITY_ANGLE:
         return alone
-    levels, left = _with_gravity(shorter, _symmetry(speeds, alone.torque))
+    levels, left, before = _with_gravity(shorter, speeds, _symmetry(speeds, alone.torque))
     entangled = levels.sigma.max() > MAX_LEVEL_SIGMA * float(np.median(np.abs(levels.torque)))
-    return alone if entangled or _chance(before, left, len(shorter) + 2) > MAX_CHANCE_OF_GRAVITY else levels
+    return alone if entangled or _chance(before, left, len(shorter) + 4) > MAX_CHANCE_OF_GRAVITY else levels
 
 
 def _means(torques: Sequence[Array]) -> Levels:
@@ -189,28 +190,38 @@ def _symmetry(speeds: Array, torque: Array) -> Array:
     return np.array(rows).reshape(-1, len(speeds))
 
 
-def _with_gravity(stretches: Sequence[tuple[Array, Array | None]], before: Array) -> tuple[Levels, list[Array]]:
-    """Return the levels fitted together with one wave over the angle, and the residual of each stretch."""
-    counts, many = [len(torque) for torque, _ in stretches], len(stretches)
+def _with_gravity(
+    stretches: Sequence[tuple[Array, Array | None]], speeds: Array, before: Array
+) -> tuple[Levels, list[Array], list[Array]]:
+    """Return the levels fitted with gravity, the residual of each stretch, and its residual without gravity.
+
+    Gravity is one wave over the angle. Friction varies by another wave over it, which turns over with the motion; its mean over
+    a stretch is the level. In motion one way the waves are one: then gravity and levels have an infinite standard deviation.
+    """
+    counts, many = np.array([len(torque) for torque, _ in stretches]), len(stretches)
     angle = np.concatenate([angle for _, angle in stretches if angle is not None])
-    columns = np.repeat(np.eye(many), counts, axis=0)
-    jacobian = np.column_stack((columns, np.cos(angle), np.sin(angle)))
+    columns, waves = np.repeat(np.eye(many), counts, axis=0), np.column_stack((np.cos(angle), np.sin(angle)))
+    means = columns.T @ waves / counts[:, np.newaxis]
+    of_friction = np.repeat(np.sign(speeds), counts)[:, np.newaxis] * (waves - columns @ means)
+    jacobian = np.column_stack((columns, waves, of_friction))
     torque = np.concatenate([torque for torque, _ in stretches])
-    symmetry = np.column_stack((before, np.zeros((len(before), 2))))
+    symmetry = np.column_stack((before, np.zeros((len(before), 4))))
 
-    def left_by(found: Array) -> list[Array]:
-        return np.split(torque - jacobian @ found, np.cumsum(counts)[:-1])
+    def left_by(columns: Array, found: Array) -> list[Array]:
+        return np.split(torque - columns @ found, np.cumsum(counts)[:-1])
 
-    first = left_by(solved(jacobian, torque))
+    first = left_by(jacobian, solved(jacobian, torque))
     alike = sum(float(each @ each) * max(correlation_length(each), 1.0) for each in first) / len(torque)
     scale = max(float(np.sqrt(alike)), 1e-300)  # of a row, so that rows that are alike do not outweigh what is assumed
     rows, values = np.concatenate((jacobian / scale, symmetry)), np.concatenate((torque / scale, np.zeros(len(symmetry))))
     found = solved(rows, values)
-    residuals = left_by(found)
+    residuals = left_by(jacobian, found)
     covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], symmetry)
-    cosine, sine = found[many:].tolist()
-    of_cosine, of_sine = np.sqrt(np.diag(covariance)[many:]).tolist()
-    return Levels(found[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine)), residuals
+    cosine, sine = found[many : many + 2].tolist()
+    of_cosine, of_sine = np.sqrt(np.diag(covariance)[many : many + 2]).tolist()
+    levels = Levels(found[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine))
+    alone = np.column_stack((columns, of_friction))
+    return levels, residuals, left_by(alone, solved(alone, torque))
 
 
 def _chance(before: Sequence[Array], left: Sequence[Array], unknowns: int) -> float:
@@ -244,7 +255,7 @@ class PositionFit(ComparedByFields):
     integrated: PositionDependent | None
 
 
-def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
+def fit_position(recordings: Recording | Sequence[Recording], gravity_order: float | None = None) -> PositionFit:
     """Fit friction over the angle to runs at constant speed.
 
     Least squares over all samples, so that turns need not be whole; and the article's own way if a run has three whole turns:
@@ -254,6 +265,7 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     Args:
         recordings: runs at constant speed with columns angle and torque of the motor, and speed if there are several speeds;
             motions towards negative angles are allowed
+        gravity_order: turns of the joint for each of the motor, if runs both ways determine a gravity, which is fitted as well
 
     Raises:
         ValueError: less than a turn, or too few samples for the orders
@@ -261,7 +273,7 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     runs = [_run(each) for each in ([recordings] if isinstance(recordings, Recording) else recordings)]
     if not runs:
         raise ValueError("recordings is empty; give at least one run at constant speed")
-    angle, level, speed = map(np.concatenate, zip(*runs, strict=True))
+    angle, level, speed, senses = map(np.concatenate, zip(*runs, strict=True))
     start, end = float(angle.min()), float(angle.max())
     if end - start < FULL_TURN:
         raise ValueError(f"the runs cover {(end - start) / FULL_TURN:.2f} turns; record a whole turn or more")
@@ -273,8 +285,11 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
     middle, half = 0.5 * (start + end), 0.5 * (end - start)
     u, k = (angle - middle) / half, np.arange(1, ORDER_COUNT + 1)
     waves = (*np.cos(np.outer(k, angle)), *np.sin(np.outer(k, angle)))
-    jacobian = np.stack([u**2, u, np.ones_like(u), *waves, *([speed] if several else [])], axis=1)
+    gravity = [] if gravity_order is None else [senses * wave(gravity_order * angle) for wave in (np.cos, np.sin)]
+    of_friction = [u**2, u, np.ones_like(u), *waves, *([speed] if several else [])]
+    jacobian = np.stack([*of_friction, *gravity], axis=1)
     coefficients = solved(jacobian, level)
+    by_gravity = jacobian[:, len(of_friction) :] @ coefficients[len(of_friction) :]
     residual = level - jacobian @ coefficients
     covariance, freedom = covariance_of(jacobian, residual[np.newaxis])
     back = np.eye(len(coefficients))  # from the parabola in u to that in q
@@ -283,7 +298,8 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
         [-2.0 * middle / half**2, 1.0 / half, 0.0],
         [(middle / half) ** 2, -middle / half, 1.0],
     ]
-    numbers, sigma = back @ coefficients, np.sqrt(np.diag(back @ covariance @ back.T))
+    numbers = (back @ coefficients)[: len(of_friction)]
+    sigma = np.sqrt(np.diag(back @ covariance @ back.T))[: len(of_friction)]
     names = ["quadratic", "linear", "constant", *(f"{n}[{i}]" for n in ("cosine", "sine") for i in range(ORDER_COUNT))]
     units = ["N.m/rad2", "N.m/rad", *(2 * ORDER_COUNT + 1) * ["N.m"]]
     if several:
@@ -293,9 +309,11 @@ def fit_position(recordings: Recording | Sequence[Recording]) -> PositionFit:
         for name, unit, value, off in zip(names, units, numbers, sigma, strict=True)
     )
     law = _law(numbers, start, end, viscous=float(numbers[-1]) if several else 0.0)
-    whole = [integrated for run in runs if (integrated := _integrated(run[0], run[1])) is not None]
+    friction = level - by_gravity
+    each_run = zip(runs, np.split(friction, np.cumsum([len(run[0]) for run in runs])[:-1]), strict=True)
+    whole = [integrated for run, part in each_run if (integrated := _integrated(run[0], part)) is not None]
     by_integrals = _law(np.mean(whole, axis=0), start, end) if whole and not several else None
-    return PositionFit(law, estimates, residual, angle, level, by_integrals)
+    return PositionFit(law, estimates, residual, angle, friction, by_integrals)
 
 
 def _law(numbers: Array, start: float, end: float, viscous: float = 0.0) -> PositionDependent:
@@ -312,8 +330,8 @@ def _law(numbers: Array, start: float, end: float, viscous: float = 0.0) -> Posi
     )
 
 
-def _run(recording: Recording) -> tuple[Array, Array, Array]:
-    """Return angle, size of the friction and size of the speed of a run one way."""
+def _run(recording: Recording) -> tuple[Array, Array, Array, Array]:
+    """Return angle, torque against the motion, size of the speed, and sense of that torque over the measured one, of a run."""
     check_recording("recordings", recording)
     angle, torque = sensible(recording, "angle", "rad"), sensible(recording, "torque", "N.m")
     if np.any(np.abs(np.diff(angle)) > np.pi):  # an encoder that wraps
@@ -322,8 +340,8 @@ def _run(recording: Recording) -> tuple[Array, Array, Array]:
     if way == 0.0:
         raise ValueError("the angle ends where it began; give each run one way, at constant speed, by itself")
     speed = np.abs(recording.values("speed", "rad/s")) if "speed" in recording.names else np.zeros_like(angle)
-    level = way * torque if np.mean(torque) * way > 0.0 or np.any(torque < 0.0) else torque
-    return angle, level, speed
+    sense = way if np.mean(torque) * way > 0.0 or np.any(torque < 0.0) else 1.0
+    return angle, sense * torque, speed, np.full_like(angle, sense)
 
 
 def _integrated(angle: Array, level: Array) -> Array | None:

@@ -40,6 +40,7 @@ MAX_PARAMETERS_LISTED = 4  # parameters named with a comparison, those furthest 
 MAX_GRAVITY_OF_RATING = 3.0  # assumed: times the largest torque in the ratings; sets differ in the torques that they state
 # Relative standard deviation of numbers from run to run of one gear, by temperature, running-in and pose (assumed).
 RUN_TO_RUN_SPREADS = {"friction_input": 0.2, "steady_friction": 0.2, "load": 0.05}
+MAX_OFF_RATIO = 0.025  # of its logarithm: of the same gear either spline may be held, as 50 and 51
 GAIN_SIGMA = 0.01  # relative, of two sensors or recorders of one bench: of all other numbers (assumed)
 
 
@@ -64,6 +65,21 @@ def with_start_set(start: GearSet, parameters: Sequence[CombinedParameter], fail
         f"the files contradict the set {start.name}: {'; '.join(words)}{more}",
         "start from the set of this gear (size and ratio), or see whether units, sides, ratio and torque constant are right",
     )  # fmt: skip
+
+
+def ratio_in_files(start: GearSet, files: Sequence[FileResult]) -> Iterator[Check]:
+    """Yield the check that the ratio in a remark of a file is that of the set, unless a person gave one with the file."""
+    ratio = abs(start.gear.kinematics.ratio)
+    for file in files:
+        read = file.recognised
+        if read is None or not read.ratio or "ratio" in read.constants:
+            continue
+        off = abs(float(np.log(read.ratio / ratio)))
+        yield Check(
+            "ratio in the file", file.name, off, MAX_OFF_RATIO, "1", off > MAX_OFF_RATIO,
+            f"a remark in the file states a ratio of {read.ratio:g}, the set {start.name} has {ratio:g}",
+            "start from the set of that ratio; or give the ratio that is right, with --constant ratio=NUMBER",
+        )  # fmt: skip
 
 
 def gravity_in_ratings(

@@ -35,7 +35,8 @@ MIN_RATIO_ERROR = 0.03  # relative: the ratio of two encoders must differ by mor
 SHAPE_OF_RESIDUALS = "shape of what is left"
 MAX_CHANCE_OF_SHAPE = 1e-3  # of noise that repeats as well: of right models 1 in 1000 has a shape by chance
 MAX_SHARE_OF_SHAPE = 0.25  # of what varies: models of real joints leave up to 16 %
-OVER_OUTPUT, OVER_SPEED, OVER_TURN, OVER_LOOP = "the angle of the output", "the speed", "the turn of the input", "the loop"
+OVER_OUTPUT, OVER_SPEED, OVER_TURN = "the angle of the output", "the speed", "the turn of the input"
+OVER_LOOP, OVER_TWIST = "the loop", "the twist"
 MISSING = {  # what a model lacks, whose residual has a shape over each of these, and what to do
     OVER_OUTPUT: (
         "a torque that changes with the angle of the output: of other joints that move, of a cable or of a second load",
@@ -269,8 +270,10 @@ def judged_shape(
     return Judged((check,), (remark,) if MIN_SHARE_OF_SHAPE * varies < size and not failed else ())
 
 
-def largest_shape(residual: Array, abscissae: Mapping[str, Array], varies: float) -> str:
+def largest_shape(residual: Array, abscissae: Mapping[str, Array], varies: float = 0.0) -> str:
     """Return the abscissa over which a residual has its largest shape; empty if that is not significant, or too small to count.
+
+    Without `varies` none is too small.
 
     One over the speed counts only if it is large enough to fail: torques over the speed resemble friction, so that an
     arbitrary one would move it far, and how far other laws of friction lie apart is known.

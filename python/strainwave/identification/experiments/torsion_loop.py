@@ -10,9 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave import _core, arguments, structure
+from strainwave import _core, arguments
 from strainwave._core import Gear
 from strainwave.analysis.branches import PRESLIDING_SHARE, monotone, slid, still_slides, thinned, turning_points
+from strainwave.analysis.torsion_loop import series_compliance
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.identification.experiments.experiment import RELATIVE_STEP, Nuisance, changing, with_step
@@ -253,27 +254,3 @@ def _crossings(twist: Array, torque: Array) -> Array:
 def at_input(recording: Recording) -> bool:
     """True if a torsion loop was measured at the input, with the output locked."""
     return not {"twist", "torque"} <= set(recording.names)
-
-
-def series_compliance(gear: Gear) -> float:
-    """Return the compliance at the output in series with the spring, the input shaft held [rad/(N.m)]; 0 without stages.
-
-    The flight actuator paper's statics, corrected (its eq. (1) at rest, with errata 1 and 2 of the flight actuator paper):
-    radial displacements times tan(alpha_t) / r_g and tangential ones over r_g are twists of the output, and all springs bear
-    one torque,
-
-        tan² alpha_t / (K_b r_g²) + 1 / (K_m r_g² cos² alpha_t) + 1 / K_CS + 1 / (i² K_WG).
-
-    >>> import strainwave as sw
-    >>> gear = sw.GearSet.read("tilt-actuator").gear
-    >>> round(1e6 * series_compliance(gear), 3), series_compliance(sw.Gear())
-    (37.049, 0.0)
-    """
-    stages = gear.structure
-    if not isinstance(stages, structure.Staged):
-        return 0.0
-    radius, slope = stages.pitch_radius, float(np.tan(stages.pressure_angle))
-    bearing = slope**2 / (stages.bearing_stiffness * radius**2)
-    mesh = (1.0 + slope**2) / (stages.mesh_stiffness * radius**2)
-    coupling = 1.0 / (stages.coupling_stiffness * gear.kinematics.ratio**2)
-    return bearing + mesh + 1.0 / stages.circular_spline_stiffness + coupling

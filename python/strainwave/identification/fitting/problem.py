@@ -25,6 +25,7 @@ MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost
 MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
+MAX_RETURNS = 3  # of unknowns without influence to their initial values, each with further steps
 LossName = Literal["linear", "soft_l1"]
 AMPLITUDE_NAMES = ("amplitude", "torque")  # in a name in place of "phase"
 
@@ -246,15 +247,34 @@ class Problem:
     def solve(
         self, start: Array, weights: Sequence[Weights], tolerance: float, held: Sequence[int] = (), trials: int = MAX_TRIALS
     ) -> Array:
-        """Return the unknowns of least cost, or those of the last step allowed; those held stay where they start."""
-        from scipy.optimize import least_squares
+        """Return the unknowns of least cost, or those of the last step allowed; those held stay where they start.
 
-        loss, (low, high) = self.loss, self.limits().T
-        whole = np.clip(start, low, high)
+        An unknown that lost its influence on the way, as a knee beyond the largest torque, returns to its start. If it has an
+        influence there, once the others fit, the steps go on from there.
+        """
+        whole = np.clip(start, *self.limits().T)
         whole[list(held)] = start[list(held)]
         free = np.setdiff1d(np.arange(self.size), held)
         if len(free) == 0:
             return whole
+        for _ in range(1 + MAX_RETURNS):
+            x, returned = self._ended(self._descended(whole, free, weights, tolerance, trials), whole, held, weights)
+            if not np.any(self._influence(x, weights)[returned]):
+                break
+            whole = x.copy()
+        return x
+
+    def _descended(
+        self, whole: Array, free: NDArray[np.intp], weights: Sequence[Weights], tolerance: float, trials: int
+    ) -> Array:
+        """Return the unknowns after the steps of a fit from `whole`, which move those in the places `free`.
+
+        A step from far off is too long, and may take an unknown to where it has no influence and no step moves it again. Such
+        steps are shortened at first, and allowed in the end: the least cost may be there.
+        """
+        from scipy.optimize import least_squares
+
+        loss = self.loss
         of_priors, right = self.prior_rows()
         lengths = np.concatenate(
             [
@@ -273,6 +293,9 @@ class Problem:
 
         squared = isinstance(loss, Squared)
         samples, priors = len(lengths), len(right)
+        out_of_domain = np.full(samples + priors, np.inf)  # SciPy takes a quarter of such a step
+        influential = np.zeros(len(free), bool)  # where the last step ended
+        keeps_influence, shortened = True, False
 
         @lru_cache(1)  # solvers ask for residuals and derivatives of a point one after the other
         def linearised(part: bytes) -> Array:
@@ -284,15 +307,21 @@ class Problem:
             return np.column_stack((slopes, left))
 
         def residuals(part: Array) -> Array:
+            nonlocal shortened
             try:
-                return linearised(part.tobytes())[:, -1]
-            except (ValueError, FloatingPointError):  # out of the domain, or diverged: SciPy takes a quarter of such a step
-                return np.full(samples + priors, np.inf)
+                columns = linearised(part.tobytes())
+            except (ValueError, FloatingPointError):  # out of the domain, or diverged
+                return out_of_domain
+            if keeps_influence and np.any(influential & ~np.any(columns[:, :-1], axis=0)):
+                shortened = True
+                return out_of_domain
+            return columns[:, -1]
 
         def jacobian(part: Array) -> Array:
             """Return the derivatives where a step ended; SciPy would go on until rounding, or a kink, made its steps fail."""
             columns = linearised(part.tobytes())
             rows, left = columns[:, :-1], columns[:, -1]
+            influential[:] = np.any(rows, axis=0)
             if squared:
                 step = solved(rows, -left)  # of Gauss and Newton
                 gain = float(np.sum((rows @ step) ** 2))  # decrease of the sum of squares if residuals were linear
@@ -306,11 +335,11 @@ class Problem:
             value, first, second = loss.cost(of_data * lengths)
             return np.concatenate((np.stack((value / lengths, first, second * lengths)), Squared().cost(of_prior)), axis=1)
 
-        with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
+        def stepped(part: Array) -> Array:
             try:
                 solution = least_squares(
                     residuals,
-                    begun[free],
+                    part,
                     jac=jacobian,
                     bounds=(lowest, highest),
                     x_scale="jac",
@@ -321,20 +350,36 @@ class Problem:
                     max_nfev=trials,
                 )
             except _SettledError as settled:
-                return self._ended(with_free(settled.part), whole, held, weights)
-        return self._ended(with_free(np.asarray(solution.x)), whole, held, weights)
+                return settled.part
+            return np.asarray(solution.x)
 
-    def _ended(self, x: Array, start: Array, held: Sequence[int], weights: Sequence[Weights]) -> Array:
-        """Return unknowns without rounding errors: at a bound that the data do not separate, or the start if without effect."""
-        rows = np.concatenate((self.jacobian(x, weights), self.prior_rows()[0]))
-        for place, (unknown, shown) in enumerate(zip(self.plan.unknowns, np.linalg.norm(rows, axis=0), strict=False)):
+        with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
+            part = stepped(begun[free])
+            if shortened:
+                keeps_influence = False
+                part = stepped(part)
+        return with_free(part)
+
+    def _influence(self, x: Array, weights: Sequence[Weights]) -> Array:
+        """Return the norm of the weighted derivatives by each unknown, shape (unknowns,)."""
+        return np.asarray(np.linalg.norm(np.concatenate((self.jacobian(x, weights), self.prior_rows()[0])), axis=0))
+
+    def _ended(self, x: Array, start: Array, held: Sequence[int], weights: Sequence[Weights]) -> tuple[Array, list[int]]:
+        """Return unknowns without rounding errors, and the places of those that went back to the start, without influence.
+
+        An unknown whose distance to a bound the data do not show is at that bound.
+        """
+        returned = []
+        for place, (unknown, shown) in enumerate(zip(self.plan.unknowns, self._influence(x, weights), strict=False)):
             resolution = MIN_DISTANCE_SIGMA / shown if shown > 0.0 else 0.0
             value = unknown.ended(float(x[place]), resolution) if shown > 0.0 else start[place]
             if place not in held and value != x[place]:
                 before, x[place] = x[place], value
                 if not self._is_valid(x):  # a law may exclude the limit of its number, for the sake of another one
                     x[place] = unknown.beside_limit(resolution) if value == unknown.low == 0.0 else before
-        return x
+                elif shown == 0.0:
+                    returned.append(place)
+        return x, returned
 
     def _is_valid(self, x: Array) -> bool:
         """True if the laws of all records allow unknowns."""

@@ -46,7 +46,8 @@ from strainwave.identification.checks.unexplained import OVER_OUTPUT, OVER_SPEED
 from strainwave.identification.experiments.drive_log import ENCODERS
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.motion_log import SHARE_OF, MotionLog, per_torque, transmitted_torque, turnover_speed
-from strainwave.identification.fitting.fit import Fit, solved_problem
+from strainwave.identification.fitting.fit import Fit
+from strainwave.identification.fitting.influence import change_with
 from strainwave.identification.kinds.between_encoders import between_encoders
 from strainwave.identification.kinds.prepared_log import PreparedLog, log_of
 from strainwave.identification.kinds.two_encoders import (
@@ -81,7 +82,6 @@ from strainwave.messages import listed
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.parameters import plain
 from strainwave.statistics.determined_sum import DeterminedSum
-from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
@@ -228,7 +228,8 @@ def _samples_late(best: MotionCandidate) -> float:
     """Return how many samples the effort comes behind the motion, or ahead of it if negative, too many to be fitted; else 0."""
     if best.log.delayed:
         return 0.0
-    late = -float(_solved_with(best, [_change_per_sample(best)])[-1])
+    _, shares = change_with(best.fit, best.log.motion.filtered(_change_per_sample(best)[np.newaxis]))
+    late = -float(shares[0])
     return late if abs(late) > MAX_DELAY_SAMPLES - 0.5 else 0.0
 
 
@@ -244,20 +245,8 @@ def _shifts_by(best: MotionCandidate, series: Sequence[Array]) -> dict[str, floa
         best: the fit of a log
         series: on the grid of its motion, shape (m,) each
     """
-    unknowns = solved_problem(best.fit)[0].plan.unknowns
-    return {plain(each.path): float(shift) for each, shift in zip(unknowns, _solved_with(best, series), strict=False)}
-
-
-def _solved_with(best: MotionCandidate, series: Sequence[Array]) -> Array:
-    """Return by how much the unknowns of a fit change, and the shares of further series; arguments as of `_shifts_by`."""
-    problem, x = solved_problem(best.fit)
-    weights = problem.weights(x)
-    weight = float(weights[0].rows.item())
-    columns = np.hstack([problem.jacobian(x, weights), weight * best.log.motion.filtered(np.stack(series)).T])
-    of_priors, right = problem.prior_rows()
-    columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(series)))])])
-    left = np.concatenate([weight * problem.residuals(x)[0][0], right - of_priors @ x])
-    return solved(columns, left)
+    shifts, _ = change_with(best.fit, best.log.motion.filtered(np.stack(series)))
+    return {plain(path): shift for path, shift in shifts.items()}
 
 
 def _models(taken: PreparedLog) -> tuple[MotionCandidate, ...]:

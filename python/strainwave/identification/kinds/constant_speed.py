@@ -34,7 +34,7 @@ from strainwave.identification.kinds.prepared_log import log_of
 from strainwave.identification.kinds.warm_up import warmed
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motion import stretches
+from strainwave.identification.reading.motion import fills_record, stretches
 from strainwave.identification.reading.names import Side
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import MIN_MOTOR_SPEED, Column, ColumnRoles, channels, measured, pair
@@ -164,10 +164,11 @@ def _is_explained(file: Recognised, known: GearSoFar) -> bool:
 
 def _without_motion(file: Recognised) -> QuestionError:
     """Return the refusal of a torque or a current without a motion, or the question which column is one."""
-    if {"angle", "speed", *ENCODERS} & {*file.recording.names, *file.constants}:
-        return QuestionError("torque without motion determines orders alone: strainwave orders finds them")
-    hint = f" (not used, as they contain texts: {listed(file.texts)})" if file.texts else ""
     speed = Answer("the shaft turned at one speed", {"constants": {"speed": 10.0}}, {"speed": "this speed [rad/s]"})
+    if {"angle", "speed", *ENCODERS} & {*file.recording.names, *file.constants}:
+        ways = [] if {"speed"} & {*file.recording.names, *file.constants} else [speed]
+        return QuestionError("torque without its speed determines orders alone: strainwave orders finds them", ways)
+    hint = f" (not used, as they contain texts: {listed(file.texts)})" if file.texts else ""
     ways = [*unnamed.motions(file.unnamed), speed]
     return QuestionError(f"torque alone determines nothing of the gear: record an angle or a speed with it{hint}", ways)
 
@@ -202,7 +203,7 @@ class ConstantSpeedRun:
         file: that it came from
         side: on which it was measured
         stretches: at constant speed
-        turning: usual speed, angle and torque of the input, if it turns once or more at one speed; else None
+        turning: usual speed, angle and torque of each stretch in which the input turns once or more
         uncertain: relative standard deviation of the torque constant that the torques rest on [1]
         remarks: what was assumed
     """
@@ -210,7 +211,7 @@ class ConstantSpeedRun:
     file: Recognised
     side: Side
     stretches: tuple[Stretch, ...]
-    turning: Recording | None
+    turning: tuple[Recording, ...]
     uncertain: float
     remarks: tuple[str, ...]
 
@@ -234,8 +235,9 @@ def run_of(file: Recognised, known: GearSoFar) -> ConstantSpeedRun | None:
     load = file.constants.get("load_torque", 0.0)
     torque = torque - (load if side == "output" else load / known.gear_set.gear.kinematics.ratio)
     angle = _angle(file, side)
-    turning = _turning(speed, angle, torque, parts[0]) if angle is not None and side == "input" and len(parts) == 1 else None
+    turning: tuple[Recording, ...] = ()
     if angle is not None and side == "input":
+        turning = tuple(_turning(speed, angle, torque, parts))
         parts = [_whole_turns(angle, part) for part in parts]
     stretches = tuple(_stretches(file, speed, torque, angle, parts, ratio if side == "input" else 1.0))
     if not all(each.whole for each in stretches):
@@ -288,7 +290,8 @@ def _of_speed(speed: Array) -> list[slice]:
     """Return the rows of each stretch of a measured speed."""
     if is_one_speed(speed):
         return [slice(0, len(speed))]
-    return stretches(speed) if speed.min() >= 0.0 or speed.max() <= 0.0 else []
+    parts = stretches(speed)
+    return parts if speed.min() >= 0.0 or speed.max() <= 0.0 or fills_record(parts, len(speed)) else []
 
 
 def _torque(file: Recognised, known: GearSoFar, side: Side) -> tuple[Array, float, Side]:
@@ -329,13 +332,13 @@ def _whole_turns(angle: Array, part: slice) -> slice:
     return part if turns < 1.0 else slice(part.start, part.start + max(int(np.argmax(way >= turns * FULL_TURN)), 1))
 
 
-def _turning(speed: Array, angle: Array, torque: Array, part: slice) -> Recording | None:
-    """Return usual speed, angle and torque of a stretch in which the input turns once or more; None for less."""
-    if abs(angle[part][-1] - angle[part][0]) < FULL_TURN:
-        return None
-    usual = np.full(len(angle[part]), abs(np.median(speed[part])))
-    columns = {"angle": angle[part], "torque": torque[part], "speed": usual}
-    return Recording(columns, {"angle": "rad", "torque": "N.m", "speed": "rad/s"})
+def _turning(speed: Array, angle: Array, torque: Array, parts: Sequence[slice]) -> Iterator[Recording]:
+    """Yield usual speed, angle and torque of each stretch in which the input turns once or more."""
+    for part in parts:
+        if abs(angle[part][-1] - angle[part][0]) >= FULL_TURN:
+            usual = np.full(len(angle[part]), abs(np.median(speed[part])))
+            columns = {"angle": angle[part], "torque": torque[part], "speed": usual}
+            yield Recording(columns, {"angle": "rad", "torque": "N.m", "speed": "rad/s"})
 
 
 # ---- Results ----------------------------------------------------------------------------------------------------------
@@ -376,10 +379,9 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     side, parts = runs[0].side, [each for run in runs for each in run.stretches if each.speed != 0.0]
     if not parts:
         raise ValueError("nothing moves at a constant speed: all stretches are at rest")
-    speeds = np.array([each.speed for each in parts])
-    levels = levels_of([each.torque for each in parts], [each.angle for each in parts], speeds)
-    speed, remarks = _signed(speeds, levels.torque)
-    gravity = tuple(_gravity(levels))
+    levels = _levels(parts)
+    speed, remarks = _signed(np.array([each.speed for each in parts]), levels.torque)
+    gravity = tuple(_gravity(levels, known.gear_set.gear.kinematics.ratio if side == "input" else 1.0))
     if gravity:
         remarks = (*remarks, "gravity is one wave over the angle of the joint, which counts from one zero in all files")
     kept = np.array([each.whole for each in parts]) | (gravity != ())
@@ -415,32 +417,45 @@ def _signed(speed: Array, torque: Array) -> tuple[Array, tuple[str, ...]]:
     return speed, ()
 
 
-def _gravity(levels: Levels) -> Iterator[FileEstimate]:
-    """Yield the gravity torque and its phase, as `loads.Pendulum` has them."""
+def _levels(parts: Sequence[Stretch]) -> Levels:
+    return levels_of([each.torque for each in parts], [each.angle for each in parts], np.array([each.speed for each in parts]))
+
+
+def _gravity(levels: Levels, ratio: float) -> Iterator[FileEstimate]:
+    """Yield the gravity torque and its phase at the output, as `loads.Pendulum` has them.
+
+    Args:
+        levels: of torques over the angle of the joint, counted as the shaft that was measured turns
+        ratio: speed of that shaft over that of the output; negative if they turn against each other
+    """
     if levels.gravity_sigma is None:
         return
     size, phase = float(np.hypot(levels.cosine, levels.sine)), float(np.arctan2(levels.cosine, levels.sine))
     of_cosine, of_sine = levels.gravity_sigma
     along = float(np.hypot(of_cosine * levels.cosine, of_sine * levels.sine)) / size
     across = float(np.hypot(of_cosine * levels.sine, of_sine * levels.cosine)) / size**2
-    yield FileEstimate("load.gravity_torque", "N.m", size, along, "")
-    yield FileEstimate("load.gravity_phase", "rad", phase, across, "")
+    yield FileEstimate("load.gravity_torque", "N.m", abs(ratio) * size, abs(ratio) * along, "")
+    yield FileEstimate("load.gravity_phase", "rad", float(np.sign(ratio)) * phase, across, "")
 
 
 def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     """Return friction over the angle of the input, as the position control article has it; nothing if no run turns once."""
-    turning = [run for run in runs if run.turning is not None]
+    turning = [run for run in runs if run.turning]
     if not turning:
         return (), known
-    recordings = [run.turning for run in turning if run.turning is not None]
-    position_fit = fit_position(recordings)
+    recordings = [each for run in turning for each in run.turning]
+    moving = [each for run in runs for each in run.stretches if each.speed != 0.0]
+    has_gravity = _levels(moving).gravity_sigma is not None
+    position_fit = fit_position(recordings, 1.0 / abs(known.gear_set.gear.kinematics.ratio) if has_gravity else None)
     names = [run.file.path.name for run in turning]
     measured = "friction_input" in known.determined
     left = Left(rms(position_fit.residual), rms(position_fit.friction), "N.m", MAX_SHARE_OF_TORQUE)
     whole = error_left({"friction over the angle": left}, listed(names))
     estimates = only_if_explained(_estimates(position_fit, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
-    remarks = list(_of_position(position_fit, len(turning)))
+    remarks = list(_of_position(position_fit, len(recordings)))
+    if len({each.speed > 0.0 for each in moving}) == 1:
+        remarks.append("it has one direction only: gravity over the angle is part of this friction; record both directions")
     sliding = law.law if law.name == "thermal" else law
     waves = _waves(position_fit)
     sigmas = {each.path: each.sigma for each in estimates if not each.why}

@@ -27,17 +27,20 @@ from strainwave.identification.candidates.torsion import (
 from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE, asymmetry_in_words
 from strainwave.identification.candidates.torsion.losses import loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
+from strainwave.identification.candidates.torsion.spread import spread_by_models, spread_by_shape
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop
 from strainwave.identification.checks.unexplained import MAX_CHANCE_OF_SHAPE, OVER_LOOP, explained, judged_shape
 from strainwave.identification.experiments.loss_loop import LossLoop
 from strainwave.identification.experiments.torsion_loop import TorsionLoop, at_input
 from strainwave.identification.fitting.influence import influence
+from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.identification.kinds.kind import Kind, Ranked, exceeded, thinned, unused
 from strainwave.identification.reading.mapping import FileMapping
+from strainwave.identification.reading.motion import turns_steadily
 from strainwave.identification.reading.names import Channel
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, ColumnRoles, first, measured, needed, pair
-from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileEstimate, FileResult, HeldOut
+from strainwave.identification.results.file_result import ASSUMED_BY_RECORDER, FileResult, HeldOut
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.identification.results.identifiability import JudgedFit
 from strainwave.identification.results.pictures import Picture
@@ -81,6 +84,8 @@ class Torsion(Kind):
         if not angles or not torques:
             return False
         column, angle, torque = angles[0], angles[0].si, torques[0].si
+        if (speeds := measured(columns, "speed")) and turns_steadily(angle, speeds[0].si):
+            return False
         if _exceeds_twist(column, mapping):
             loop = [] if measured(columns, "speed") else [Answer("a torsion loop all the same", {"kind": "torsion"})]
             raise QuestionError(
@@ -141,10 +146,13 @@ class Torsion(Kind):
         shared, left = _shared(best, gear, loop, friction_measured), best.fit.residuals[0]
         varies = float(np.std(best.fit.experiment.measured))
         shaped = judged_shape(left, {OVER_LOOP: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
-        fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared)
+        gain_sigma, by_models, by_shape = _gain_sigma(loop, gear), spread_by_models(best, others), spread_by_shape(best)
+        spread = {
+            each.path: float(np.linalg.norm([by_models[each.path], by_shape[each.path], _by_gain(each, gain_sigma)]))
+            for each in best.fit.estimates
+        }
+        fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared, spread=spread)
         fit, estimates = fitted.with_set_before(known)
-        gain_sigma = _gain_sigma(loop, gear)
-        estimates = tuple(_with_gain_sigma(each, gain_sigma) for each in estimates)
         result = FileResult(
             name, file, best.name, estimates,
             (
@@ -373,11 +381,10 @@ def _gain_sigma(loop: TorsionLoop, gear: Gear) -> float:
     return abs(loop.input_ratio) * float(np.sqrt(np.mean(chords**2)))
 
 
-def _with_gain_sigma(estimate: FileEstimate, gain_sigma: float) -> FileEstimate:
-    """Return an estimate with the uncertainty by a gain that torque and twist share."""
+def _by_gain(estimate: Estimate, gain_sigma: float) -> float:
+    """Return the standard deviation of an estimate by a gain that torque and twist share."""
     exponents = base_exponents(estimate.unit)[1]
-    shift = abs(estimate.value) * gain_sigma * (exponents.get("kg", 0) - exponents.get("rad", 0))
-    return replace(estimate, sigma=float(np.hypot(estimate.sigma, shift)))
+    return abs(estimate.value * gain_sigma * (exponents.get("kg", 0) - exponents.get("rad", 0)))
 
 
 def _of_error(gain_sigma: float, loop: TorsionLoop) -> Iterator[str]:

@@ -68,7 +68,7 @@ class TwoEncoders(Kind):
         """Fit the kinematic error over the temperature, if the temperatures of the files differ enough."""
         measured_at = list[tuple[Recognised, float, TransmissionError]]()
         for file in files:
-            if np.isfinite(temperature := temperature_of(file)):
+            if np.isfinite(temperature := file.temperature):
                 with suppress(ValueError):  # one that cannot be used, as its own result states
                     errors = transmission_error(file.recording, ratio=file.constants.get("ratio"), ratio_option=RATIO_OPTION)
                     measured_at.append((file, temperature, errors))
@@ -95,13 +95,6 @@ def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoF
         return known.with_parts({"kinematic_error": law}, sigmas, f"{name}, at {found.speeds}" if found.speeds else name)
     entries = {path: Entry(f"identified in combination: {_why(found)}", uncertainty=sigma) for path, sigma in sigmas.items()}
     return known.with_sums({"kinematic_error": law}, entries, name)
-
-
-def temperature_of(file: Recognised) -> float:
-    """Return the temperature of a file [K]: its mean, or as given with it; not a number if it is not known."""
-    if "temperature" in file.recording:
-        return float(np.mean(file.recording.values("temperature", "K")))
-    return file.constants.get("temperature", np.nan)
 
 
 def with_error_over_temperature(known: GearSoFar, found: ErrorOverTemperature, names: Sequence[str]) -> GearSoFar:
@@ -140,7 +133,7 @@ def result_over_temperature(found: ErrorOverTemperature, names: Sequence[str]) -
 
 def _at_its_temperature(file: Recognised, found: TransmissionError) -> Iterator[FileEstimate]:
     """Yield the orders of a file; those at different temperatures are not compared."""
-    degrees = temperature_of(file)
+    degrees = file.temperature
     for each in orders_of(found):
         yield replace(each, law=f"at {degrees:.0f} K") if np.isfinite(degrees) else each
 

@@ -15,6 +15,7 @@ from strainwave.identification.reading.names import (
     CHANNEL_ALIASES,
     CHANNELS,
     QUANTITIES,
+    UNUSED,
     Channel,
     Meaning,
     is_of_joint,
@@ -62,7 +63,7 @@ def chosen(table: OpenTable, mapping: FileMapping) -> tuple[list[Column], list[s
 
 def by_name(table: OpenTable, mapping: FileMapping, by_user: Sequence[Column] = ()) -> list[Column]:
     """Return the columns with a known name, but for channels that a person named."""
-    taken = {column.position for column in by_user}
+    taken = {column.position for column in by_user} | _unused_places(table, mapping)
     columns = []
     for position, (label, content, named) in enumerate(
         zip(table.labels, table.contents, _meanings(table, mapping), strict=True)
@@ -158,7 +159,7 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
 def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """Return the columns that a person named."""
     columns = []
-    wanted = [(name, each) for name, each in mapping.columns.items() if name not in LISTED_CHANNELS]
+    wanted = [(name, each) for name, each in mapping.columns.items() if name not in (*LISTED_CHANNELS, UNUSED)]
     wanted += [
         (name, each.strip()) for name in LISTED_CHANNELS for each in mapping.columns.get(name, "").split(",") if each.strip()
     ]
@@ -176,6 +177,12 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
         columns.append(Column(place, label, channel, which, by_user=True, neighbour=neighbour, unit=unit))
     sided = {each.position for each in columns if each.channel.quantity == "torque" and each.channel.side}
     return [each for each in columns if each.channel != CHANNELS["torque"] or each.position not in sided]
+
+
+def _unused_places(table: OpenTable, mapping: FileMapping) -> set[int]:
+    """Return the positions of the columns that a person does not want to be used."""
+    names = [each.strip() for each in mapping.columns.get(UNUSED, "").split(",")]
+    return {_place_of(table, UNUSED, name, mapping.joint) for name in names if name}
 
 
 def _place_of(table: OpenTable, name: str, column: str, joint: str | None) -> int:

@@ -29,7 +29,7 @@ from strainwave import arguments, questions
 from strainwave.files.gear_file import at, document
 from strainwave.files.units import check as check_unit, convert
 from strainwave.identification.kinds import KINDS
-from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, Side
+from strainwave.identification.reading.names import CHANNEL_ALIASES, CHANNELS, UNUSED, Side
 from strainwave.messages import nearest_of, one_line, quoted, shortened
 from strainwave.number_texts import is_number, number_in
 
@@ -65,7 +65,7 @@ class FileMapping:
     """Meaning of the columns of a file as the user states it; strainwave determines the rest from the file, or asks.
 
     Args:
-        columns: for each channel the name or the number of its column in the file
+        columns: for each channel the name or the number of its column in the file; for `unused` those that are not to be used
         units: unit of each channel whose header states none
         sign: 1 or -1 for each channel that counts the other way
         constants: numbers that belong to the recording, of `CONSTANTS`, in SI units or as "75 mN.m/A"
@@ -92,9 +92,9 @@ class FileMapping:
 
     def __post_init__(self) -> None:
         channels = {**CHANNELS, **CHANNEL_ALIASES}
-        for what, names in (("column", self.columns), ("sign", self.sign)):
+        for what, names, known in (("column", self.columns, (*channels, UNUSED)), ("sign", self.sign, channels)):
             for name in names:
-                _check_known(f"--{what} {name}", name, channels, "channels")
+                _check_known(f"--{what} {name}", name, known, "channels")
         for name, wanted in self.columns.items():
             if wanted.count(",") >= MAX_NAMED:
                 raise ValueError(f"--column {name} names {wanted.count(',') + 1} columns; at most {MAX_NAMED} are taken")

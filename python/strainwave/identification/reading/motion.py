@@ -21,6 +21,7 @@ MIN_HELD = 3  # rows with one value
 MIN_CHANGES = 20  # of the value
 MIN_STEPS_OF_MOTION = 3.0  # smallest steps: an encoder that moves further between renewals is not waiting for its next step
 MAX_JITTER = 1  # rows by which most renewals come early or late
+MIN_STEADY_SHARE = 0.5  # of the rows, that stretches of one speed fill; a record that has less is a log
 MIN_REGULAR = 0.8  # of the renewals
 
 
@@ -195,6 +196,24 @@ def stretches(speed: Array) -> list[slice]:
     noise = MAX_NOISE * float(np.median(np.abs(speed - smooth)))
     is_moving = np.abs(smooth) > MAX_SPEED_AT_REST * np.abs(smooth).max()
     return runs_of((change < np.maximum(MAX_CHANGE * np.abs(smooth), noise)) & is_moving, MIN_ROWS_OF_STRETCH)
+
+
+def fills_record(parts: Sequence[slice], rows: int) -> bool:
+    """True for stretches that make up half of the rows of a record or more."""
+    return bool(sum(part.stop - part.start for part in parts) >= MIN_STEADY_SHARE * rows)
+
+
+def turns_steadily(angle: Array, speed: Array) -> bool:
+    """True for a shaft that turns once or more in each of the stretches of one speed that a record consists of.
+
+    >>> angle = np.concatenate([np.linspace(0.0, 20.0, 400), np.linspace(20.0, 0.0, 400)])
+    >>> speed = np.repeat([2.0, -2.0], 400)
+    >>> turns_steadily(angle, speed), turns_steadily(0.01 * angle, speed)
+    (True, False)
+    """
+    parts = stretches(speed)
+    ways = [abs(float(angle[part.stop - 1] - angle[part.start])) for part in parts]
+    return fills_record(parts, len(speed)) and bool(min(ways) > 2.0 * np.pi)
 
 
 def runs_of(wanted: NDArray[np.bool_], min_rows: int) -> list[slice]:

@@ -410,6 +410,7 @@ CHANNELS: dict[str, Channel] = {
     "speed": Channel("speed"),
     "angle": Channel("angle"),
 }
+UNUSED = "unused"  # stands for a channel where a person names columns that are not to be used, with commas
 # Other names that people may give.
 CHANNEL_ALIASES = {"position": "angle", "output_torque": "joint_torque", "velocity": "speed"}
 

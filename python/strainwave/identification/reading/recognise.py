@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -14,6 +15,7 @@ from strainwave.files.array_table import ArrayTable
 from strainwave.files.labels import ColumnSource
 from strainwave.files.recording import Recording
 from strainwave.files.table_format import OpenTable
+from strainwave.files.text_table import CsvTable
 from strainwave.identification.kinds import KINDS, kind_named
 from strainwave.identification.reading import unnamed
 from strainwave.identification.reading.answers import in_usual_way, with_answers_that_work
@@ -24,6 +26,7 @@ from strainwave.identification.reading.motion import MAX_OFF_SPEED, jumps, renew
 from strainwave.identification.reading.names import (
     CHANNEL_ALIASES,
     CHANNELS,
+    UNUSED,
     Side,
     joint_in,
     meaning,
@@ -45,6 +48,7 @@ MIN_NEIGHBOUR_MOTION = 0.02  # rad: another joint that moves by less rests
 # Hz.
 RATE_NAMES = ("fs", "rate", "sample_rate", "samplerate", "sampling_rate", "samplingrate", "sampling_frequency", "f_s", "freq")
 STEP_NAMES = ("ts", "dt", "t_s", "sample_time", "sampletime", "sampling_time", "delta_t", "period")  # s
+RATIO_NAME = re.compile(r"(?i)((gear|reduction)[\s_]*)?ratio|reduction|(über|unter)setzung")
 UNUSED_NUMBERS = "single numbers, not used: "
 OF_REFLECTED = {"reflected_angle": "input_angle", "reflected_speed": "input_speed"}  # divided by the ratio, and not
 
@@ -77,6 +81,7 @@ class Recognised(Presented):
         units_given: channels whose unit a person gave, and the file does not contain
         units_assumed: channels whose unit neither the file nor a person states, and no number determines
         parts: all files of a recording that has one for each quantity; empty for a recording in one file
+        ratio: of the gear, by a remark or a single number in the file; None if it has none
     """
 
     path: Path
@@ -102,6 +107,14 @@ class Recognised(Presented):
     units_assumed: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     parts: tuple[Path, ...] = ()
+    ratio: float | None = None
+
+    @property
+    def temperature(self) -> float:
+        """Mean temperature of the file, or as given with it [K]; not a number if unknown."""
+        if "temperature" in self.recording:
+            return float(np.mean(self.recording.values("temperature", "K")))
+        return self.constants.get("temperature", np.nan)
 
     def at_ratio(self, ratio: float) -> Recognised:
         """Return the same with motions of the motor counted at the input, if the file has them divided by the ratio."""
@@ -151,7 +164,7 @@ def recognise(file: str | Path | MeasurementFile, mapping: FileMapping | None = 
 def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
     """Return a file as it is read: columns, their values in SI units, their roles, the recording; raises as `recognise`."""
     table = source.table
-    mapping, of_numbers = _with_single_numbers(table, stated)
+    mapping, of_numbers, ratio = _with_single_numbers(table, stated)
     mapping, of_joint = with_joint(source, mapping)
     _check_parts(source)
     _check_named_effort(source, mapping)
@@ -209,6 +222,7 @@ def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
             *_of_unused(unused.values()),
         ),
         parts=tuple(part.path for part in parts),
+        ratio=ratio,
     )
 
 
@@ -282,15 +296,17 @@ def _check_parts(source: MeasurementFile) -> None:
 
 def _check_named_effort(source: MeasurementFile, mapping: FileMapping) -> None:
     """Ask for the torque or current of columns without names, whose layout contains the motion alone."""
-    named, layout = {CHANNELS[CHANNEL_ALIASES.get(name, name)].quantity for name in mapping.columns}, source.layout
+    channels = [CHANNELS[CHANNEL_ALIASES.get(name, name)] for name in mapping.columns if name != UNUSED]
+    named, layout = {channel.quantity for channel in channels}, source.layout
     if layout is not None and layout.efforts and not named & {"torque", "current", "voltage"}:
         is_timed = "rate" in mapping.constants or any(label.name == "time" for label in source.table.labels)
         raise layout.question(is_timed=is_timed)
 
 
-def _with_single_numbers(table: OpenTable, mapping: FileMapping) -> tuple[FileMapping, list[str]]:
-    """Return the mapping, with the rate of rows without time if a single number in the file is one; and remarks."""
-    singles = dict(table.singles) if isinstance(table, ArrayTable) else {}
+def _with_single_numbers(table: OpenTable, mapping: FileMapping) -> tuple[FileMapping, list[str], float | None]:
+    """Return the mapping, with the rate of rows if a single number is one; remarks; and the ratio that the file states."""
+    singles = dict(table.singles) if isinstance(table, ArrayTable | CsvTable) else {}
+    ratios = [singles.pop(name) for name in list(singles) if RATIO_NAME.fullmatch(name.rpartition(".")[2])]
     timed = "time" in mapping.columns or any(
         (channel := meaning(label)) and channel.quantity == "time" for label in table.labels
     )
@@ -302,7 +318,7 @@ def _with_single_numbers(table: OpenTable, mapping: FileMapping) -> tuple[FileMa
         mapping = mapping.updated(FileMapping(constants={"rate": rate}))
     if singles:
         remarks.append(f"{UNUSED_NUMBERS}{listed(f'{name} = {value:g}' for name, value in singles.items())}")
-    return mapping, remarks
+    return mapping, remarks, ratios[0] if ratios else None
 
 
 def _rate(name: str, value: float) -> float | None:

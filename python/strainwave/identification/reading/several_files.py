@@ -18,6 +18,8 @@ from strainwave.identification.reading.names import CHANNELS, Side
 from strainwave.identification.reading.recognise import Recognised, recognise
 from strainwave.identification.reading.source import MeasurementFile
 from strainwave.messages import listed
+from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.residuals import rms
 
 Array = NDArray[np.float64]
 
@@ -29,6 +31,8 @@ MIN_COMMON_CHANNELS = 2  # besides conditions, of two files that may contain one
 MAX_OFF_NUMBER = 1e-3  # of the range, between two readings of one number
 MAX_OFF_RUN = 4e-3  # usual deviations, between two encoders of one drive that moved once, but for scale and zero
 MAX_OFF_EFFORT = 0.2  # of the same: as much as noise and delay make
+MAX_OFF_ERROR = 0.01  # of the kinematic error, between two copies of one record: as much as rounding makes
+MAX_OFF_TEMPERATURE = 0.5  # K: as much as rounding of one temperature makes
 SAMPLES_COMPARED = 500  # of two runs
 
 _Reading = tuple[Side | None, tuple[tuple[str, str], ...]]  # the side, and quantity and unit of each motion
@@ -158,7 +162,9 @@ def same_as(files: Sequence[Recognised]) -> dict[str, str]:
 
 
 def _are_alike(one: Recognised, other: Recognised) -> bool:
-    """True if two files of one kind contain one measurement."""
+    """True if two files of one kind contain one measurement: a motion may be repeated at another temperature."""
+    if abs(one.temperature - other.temperature) > MAX_OFF_TEMPERATURE:
+        return False
     if one.kind in ("log", "encoders"):
         return _are_one_run(one.recording, other.recording)
     common = [name for name in one.recording.names if name in other.recording]
@@ -186,7 +192,22 @@ def _are_one_run(one: Recording, other: Recording) -> bool:
     if not time[-1] > time[0]:
         return False
     a, b = _less_line(np.interp(time, one.time, angles[0])), _less_line(np.interp(time, other.time, angles[1]))
-    return _are_proportional(a, b, MAX_OFF_RUN) and _may_be_one_effort(one, other, time)
+    if not _are_proportional(a, b, MAX_OFF_RUN):
+        return False
+    return _may_be_one_effort(one, other, time) and _may_be_one_error(one, other, time)
+
+
+def _may_be_one_error(one: Recording, other: Recording, time: Array) -> bool:
+    """True if the output is off the motion of the input by the same: a repeated motion has another error, and other noise."""
+    if not all(set(ENCODERS) <= set(each.names) for each in (one, other)):
+        return True
+    errors = []
+    for recording in (one, other):
+        angles = {name: np.interp(time, recording.time, recording[name]) for name in ENCODERS}
+        columns = np.stack([angles["input_angle"], np.ones_like(time)], axis=1)
+        errors.append(angles["output_angle"] - columns @ solved(columns, angles["output_angle"]))
+    a, b = errors
+    return rms(a - np.sign(a @ b) * b) <= MAX_OFF_ERROR * rms(a)
 
 
 def _may_be_one_effort(one: Recording, other: Recording, time: Array) -> bool:

@@ -48,6 +48,8 @@ class JudgedFit:
         explained: False if the model does not explain the measurement; then it determines nothing
         shared: parameters that this kind of measurement determines only together with others, by path, and how
         prefix: of the paths of the fit in a gear set; empty for the fit of a drive
+        spread: standard deviation of estimates that the fit does not contain, by path: by the choice of its model, or by what
+            that lacks
     """
 
     fit: Fit
@@ -56,6 +58,7 @@ class JudgedFit:
     explained: bool = True
     shared: Mapping[str, str] = field(default_factory=dict)
     prefix: str = "gear."
+    spread: Mapping[str, float] = field(default_factory=dict)
 
     def with_set_before(self, known: GearSoFar) -> tuple[Fit, tuple[FileEstimate, ...]]:
         """Return the fit and its estimates, with the set before the file as the prior of what the file does not determine."""
@@ -70,7 +73,8 @@ class JudgedFit:
             determined: paths of numbers that earlier files determine, whose uncertainty is part of that of the estimates
         """
         free = len(self.fit.estimates) - len(self.fit.experiment.nuisances)
-        for place, estimate in enumerate(self.fit.estimates[:free]):
+        for place in range(free):
+            estimate = self._spread(place)
             path, size = self.prefix + estimate.path, _size(estimate)
             shifts = self.influence.shifts(place, sources, self.prefix)
             of_others = [
@@ -84,9 +88,14 @@ class JudgedFit:
                 in_combination=in_combination, shift_by_kept=dict(list(relative.items())[:MAX_KEPT_LISTED]),
             )  # fmt: skip
 
+    def _spread(self, place: int) -> Estimate:
+        """Return an estimate with its whole standard deviation."""
+        estimate = self.fit.estimates[place]
+        return replace(estimate, sigma=float(np.hypot(estimate.sigma, self.spread.get(estimate.path, 0.0))))
+
     def _why(self, place: int, path: str, sources: Mapping[str, Entry], shifts: Mapping[str, float]) -> tuple[str, bool]:
         """Return why the data do not determine an estimate, and whether they do together with another; empty if they do."""
-        estimate = self.fit.estimates[place]
+        estimate = self._spread(place)
         if self.explained and not np.isfinite(estimate.sigma) and (why := combination(self.fit, place)):
             return why, True
         if why := self._undetermined(place):
@@ -103,7 +112,7 @@ class JudgedFit:
         return f"the uncertainty of kept parameters may change it: {', '.join(far[:MAX_KEPT_LISTED])}" if far else "", False
 
     def _undetermined(self, place: int) -> str:
-        estimate = self.fit.estimates[place]
+        estimate = self._spread(place)
         if not self.explained:
             return f"the model does not explain {self.source}"
         if not np.isfinite(estimate.sigma):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +18,7 @@ from strainwave.files.writing import DRAFT_PREFIX
 from strainwave.messages import one_line
 from strainwave.rig.bench.steps import FILE, Step, append_step, read_steps
 from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES
-from strainwave.rig.vision.image import pictures_in
+from strainwave.rig.vision.image import as_image, pictures_in
 
 AT_REST_PROBABILITY = 0.99  # share of readings at rest that count as at rest [1]
 ZERO_CELSIUS = 273.15  # K
@@ -329,6 +329,35 @@ class Device:
             raise OSError(f"camera {self.number} gives no picture; is it still plugged in?")
         path = folder / "picture.png"
         Image.fromarray(np.ascontiguousarray(picture[..., ::-1] if picture.ndim == 3 else picture)).save(path)
+        return path
+
+
+class Frames:
+    """Pictures of any camera: arrays one after the other, as imageio.v3.imiter, or the library of a camera, gives them.
+
+    Args:
+        name: of the camera
+        arrays: of pixels, as `as_image` takes them; the next one is a picture of now
+    """
+
+    def __init__(self, name: str, arrays: Iterable[NDArray[Any]]) -> None:
+        self.name, self.arrays = name, iter(arrays)
+
+    def take(self, folder: Path) -> Path:
+        """A picture of now, as PNG.
+
+        Raises:
+            OSError: the camera gives none
+            ValueError: it is no picture that can be read
+        """
+        from PIL import Image
+
+        pixels = next(self.arrays, None)
+        if pixels is None:
+            raise OSError(f"{self.name} gives no picture; is it still plugged in?")
+        as_image(self.name, pixels)
+        path = folder / "picture.png"
+        Image.fromarray(np.ascontiguousarray(pixels)).save(path)
         return path
 
 

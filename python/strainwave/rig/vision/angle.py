@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,17 @@ from strainwave.presentation import Presented
 from strainwave.progress import Progress, in_turn
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_at
-from strainwave.rig.vision.image import VIDEOS, Image, by_number, picture_files, video_images
+from strainwave.rig.vision.image import (
+    MAX_FRAMES,
+    SERIES,
+    VIDEOS,
+    Image,
+    as_image,
+    by_number,
+    picture_files,
+    series_images,
+    video_images,
+)
 from strainwave.rig.vision.marker import Frame, Marker, look
 from strainwave.statistics.linear_fit import solved
 
@@ -33,7 +44,7 @@ _MAX_TILT_ERROR_SIGMA = 10.0  # error of an angle by the tilt of the camera, in 
 
 
 def measure_angles(
-    images: Source | Iterable[Source],
+    images: Source | Iterable[Source | NDArray[Any]],
     *,
     camera: Camera = PERFECT,
     reference: str | None = None,
@@ -48,7 +59,8 @@ def measure_angles(
     up to 90 degrees from one image to the next, else by which marker is the larger one, right up to 180 degrees.
 
     Args:
-        images: files, or pictures as `read_image` and `as_image` give them; or a folder, or a video
+        images: files, or pictures as `read_image` and `as_image` give them; or a folder, a video, an animated GIF or a TIFF of
+            several pages; or arrays of pixels one after the other, as `imageio.v3.imiter` and libraries of cameras give them
         camera: what it does to lengths
         reference: name of the image whose angle is 0; the first with an angle if None
         radius: the smallest and the largest that a marker may have [px]; from 6 px to half the picture if None
@@ -78,7 +90,7 @@ def measure_angles(
     return follow(frames, camera=camera, reference=reference)
 
 
-def _sources(images: Source | Iterable[Source]) -> Iterator[Source]:
+def _sources(images: Source | Iterable[Source | NDArray[Any]]) -> Iterator[Source]:
     if isinstance(images, Image):
         yield images
     elif isinstance(images, str | Path):
@@ -87,12 +99,19 @@ def _sources(images: Source | Iterable[Source]) -> Iterator[Source]:
             yield from picture_files(path)
         elif path.suffix.lower() in VIDEOS:
             yield from video_images(path)
+        elif path.suffix.lower() in SERIES and path.exists():
+            yield from series_images(path)
         elif not path.exists():
             raise FileNotFoundError(f"{quoted(str(path))} is no file or folder")
         else:
             yield path
     else:
-        for each in images:
+        for number, each in enumerate(images, 1):
+            if isinstance(each, np.ndarray):
+                if number > MAX_FRAMES:
+                    raise ValueError(f"images has more than {MAX_FRAMES} pictures; cut out what shows the test")
+                yield as_image(f"picture {number}", each)
+                continue
             if not isinstance(each, str | Path | Image):
                 raise TypeError(f"images must be files or pictures, not {shortened(each)}")
             yield each

@@ -38,6 +38,9 @@ MAX_PARTS = 20_000  # chunks of a PNG, segments before the pixels of a JPEG: pil
 MAX_HEAD_BYTES = 2**24  # before the pixels of a JPEG
 MAX_FILLING = 64  # bytes between two segments there
 MAX_EXIF_BYTES = 2**16  # one segment of a JPEG
+SERIES_SIGNATURES = {b"GIF87a": "GIF", b"GIF89a": "GIF", b"II*\0": "TIFF", b"MM\0*": "TIFF"}  # files of several pictures
+MAX_SERIES_PICTURES = 10_000  # of one file
+MAX_SERIES_PIXELS = 2**33  # of all pictures of one file: 4000 of two million; a GIF of kilobytes may claim more
 MAX_SCANS = 50  # of a progressive JPEG, each of which passes over all pixels; encoders write ten
 MAX_SAMPLES = 6  # of a pixel, that a TIFF may have in planes of their own
 MAX_NETPBM_HEAD = 4096  # bytes
@@ -132,6 +135,58 @@ def decoded(data: bytes) -> tuple[Grey, datetime | None]:
             raise
         except Exception as error:  # of a damaged file pillow raises any
             raise RefusedFile(f"is damaged: {error}") from None
+
+
+def decoded_series(data: bytes) -> Iterator[Grey]:
+    """Yield the grey values of each picture of an animated GIF, or of each page of a TIFF, of the full scale.
+
+    Raises:
+        RefusedFile: it is neither, damaged, or its pictures are too small, too large or too many
+    """
+    from PIL import Image as Pillow
+
+    kind = next((kind for begin, kind in SERIES_SIGNATURES.items() if data.startswith(begin)), None)
+    if kind is None:
+        raise RefusedFile("is no file of several pictures that can be read; GIF and TIFF can")
+    pixels = 0
+    with warnings.catch_warnings(action="ignore"):  # of odd entries next to the pictures
+        try:
+            if kind == "TIFF":
+                _check_pages(data)
+            picture = Pillow.open(io.BytesIO(data), formats=[kind])
+            for number in range(MAX_SERIES_PICTURES + 1):
+                try:
+                    picture.seek(number)
+                except EOFError:
+                    return
+                check_size(*picture.size)
+                pixels += picture.width * picture.height
+                if pixels > MAX_SERIES_PIXELS or number == MAX_SERIES_PICTURES:
+                    limits = f"{MAX_SERIES_PICTURES} pictures, {MAX_SERIES_PIXELS} pixels in all"
+                    raise RefusedFile(f"has more than can be read: {limits}; cut out what shows the test")
+                if kind == "TIFF":
+                    _check_tiles(picture)
+                yield _grey(picture, 1)
+        except RefusedFile:
+            raise
+        except Pillow.DecompressionBombError:
+            raise RefusedFile(f"is too large: {MAX_PIXELS} pixels can be read; make it smaller") from None
+        except Exception as error:  # of a damaged file pillow raises any
+            raise RefusedFile(f"is damaged: {error}") from None
+
+
+def _check_pages(data: bytes) -> None:
+    """Refuse a TIFF of which a page has tags that claim too much, or that has too many pages, or one twice."""
+    order, seen = ORDERS[data[:4]], set[int]()
+    (place,) = unpack_from(f"{order}L", data, 4)
+    while place:
+        if place in seen or len(seen) >= MAX_SERIES_PICTURES:
+            raise RefusedFile(f"has more than {MAX_SERIES_PICTURES} pages, or the same one again; cut out what shows the test")
+        seen.add(place)
+        for _ in _directory(data, order, place):  # refuses tags that claim too much
+            pass
+        (count,) = unpack_from(f"{order}H", data, place)
+        (place,) = unpack_from(f"{order}L", data, place + 2 + 12 * count)
 
 
 def check_size(width: int, height: int) -> None:

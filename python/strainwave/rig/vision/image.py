@@ -18,9 +18,10 @@ from strainwave.equality import ComparedByFields
 from strainwave.files.budget import RefusedFile, open_regular, read_regular
 from strainwave.messages import one_line, quoted
 from strainwave.presentation import Presented
-from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey, check_size, decoded, grey_of
+from strainwave.rig.vision.decoding import MAX_PICTURE_BYTES, Grey, check_size, decoded, decoded_series, grey_of
 
 PICTURES = (".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".pgm")
+SERIES = (".gif", ".tif", ".tiff")
 VIDEOS = (".mp4", ".avi", ".mov", ".mkv", ".m4v")
 # What a container begins with; playlists and other texts, which name further files to be opened, begin otherwise.
 CONTAINERS = re.compile(rb"\0...(ftyp|moov|mdat|wide|free|skip)|RIFF....AVI LIST|\x1a\x45\xdf\xa3", re.DOTALL)
@@ -159,6 +160,40 @@ def video_images(path: str | Path) -> Iterator[Image]:
         capture.release()
     if count == 0:
         raise ValueError(f"{_shown(path)} has no frame that opencv can read")
+
+
+def series_images(path: str | Path) -> Iterator[Image]:
+    """The pictures of an animated GIF, or the pages of a TIFF, named as the file with # and their number from 1.
+
+    Raises:
+        OSError: there is no such file
+        ValueError: it contains no such pictures, damaged ones, or ones that are too small, too large or too many
+    """
+    path = Path(path)
+    try:
+        data = read_regular(path, MAX_PICTURE_BYTES)
+        for number, grey in enumerate(decoded_series(data), 1):
+            yield Image(f"{path.name}#{number}", grey, hashlib.sha256(grey.data).hexdigest())
+    except RefusedFile as error:
+        raise ValueError(one_line(f"{_shown(path)} {error}")) from None
+
+
+def imageio_arrays(source: str) -> Iterator[NDArray[Any]]:
+    """The pictures of a camera that imageio opens by a name as <video0>; imageio also opens addresses: they are refused.
+
+    Raises:
+        ImportError: imageio is not installed
+        ValueError: the source is no name of a camera
+    """
+    if re.fullmatch(r"<video[0-9]{1,3}>", source) is None:
+        raise ValueError(
+            f"{quoted(source)} is no camera of imageio; write it as <video0>; for a file, give a folder of pictures"
+        )
+    try:
+        from imageio.v3 import imiter
+    except ImportError:
+        raise ImportError("a camera of imageio needs it: pip install 'imageio[ffmpeg]'") from None
+    return iter(imiter(source))
 
 
 def _opened(cv2: Any, path: Path) -> Any:

@@ -237,10 +237,13 @@ class Sheet {
     return element("label", { className: "side" }, "side of the numbers ", menu);
   }
   column({ column, channel, unit, assumed, low, high, si }) {
-    const menu = element("select", { "aria-label": `what ${column} is` }, element("option", { value: "", disabled: Boolean(channel) }, "not used"), ...CHANNELS.map((each) => element("option", { value: each, selected: each === channel }, label(each))));
+    const menu = element("select", { "aria-label": `what ${column} is` }, element("option", { value: "" }, "not used"), ...CHANNELS.map((each) => element("option", { value: each, selected: each === channel }, label(each))));
     menu.onchange = () => {
-      const others = (this.values.column ?? []).filter((each) => !each.endsWith(`=${column}`) && !each.startsWith(`${menu.value}=`));
-      this.values.column = menu.value ? [...others, `${menu.value}=${column}`] : others;
+      const given = this.values.column ?? [];
+      const before = given.find((each) => each.startsWith("unused="))?.slice("unused=".length).split(",") ?? [];
+      const unused = [...before.filter((each) => each !== column), ...(menu.value ? [] : [column])];
+      const others = given.filter((each) => !each.startsWith("unused=") && !each.endsWith(`=${column}`) && !each.startsWith(`${menu.value}=`));
+      this.values.column = [...others, ...(menu.value ? [`${menu.value}=${column}`] : []), ...(unused.length ? [`unused=${unused.join(",")}`] : [])];
       this.askReadings();
     };
     const input = element("input", { value: unit ?? "", "aria-label": `unit of ${column}`, spellcheck: false, disabled: !channel });

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +78,56 @@ def test_without_gravity_the_levels_are_means() -> None:
     assert levels.gravity_sigma is None
     assert levels.torque == pytest.approx([each.mean() for each in torques])
     assert levels.sigma == pytest.approx(1e-3 / np.sqrt(300), rel=0.3)
+
+
+def over_200_rad(speeds: Sequence[float], torque: float, seed: int) -> list[tuple[Array, Array]]:
+    """Torque [N.m] and angle [rad] of a motor of ratio 100 with the printed parabola, under gravity `torque` at the output."""
+    random, stretches = np.random.default_rng(seed), []
+    for speed in speeds:
+        angle = np.linspace(0.0, 200.0, 400)[:: int(np.sign(speed))]
+        friction = np.sign(speed) * (S1 * angle**2 + S2 * angle + S3) + 4e-4 * speed
+        gravity = torque / 100.0 * np.sin(angle / 100.0 + PHASE)
+        stretches.append((friction + gravity + 5e-4 * random.normal(size=len(angle)), angle))
+    return stretches
+
+
+@pytest.mark.parametrize(("torque", "seed"), [(0.0, 1), (0.0, 2), (3.0, 3)])
+@pytest.mark.parametrize("speeds", [(2.0,), (1.0, 4.0, 10.0), (-1.0, -4.0)])
+def test_motion_one_way_does_not_separate_gravity_from_friction_over_the_angle(
+    speeds: tuple[float, ...], torque: float, seed: int
+) -> None:
+    stretches = over_200_rad(speeds, torque, seed)
+    levels = levels_of([each for each, _ in stretches], [angle / 100.0 for _, angle in stretches], np.array(speeds))
+    assert levels.gravity_sigma is None
+    assert levels.torque == pytest.approx([each.mean() for each, _ in stretches])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_motion_both_ways_separates_gravity_from_friction_over_the_angle(seed: int) -> None:
+    speeds = np.array([1.0, -1.0, 4.0, -4.0])
+    stretches = over_200_rad(speeds, 3.0, seed)
+    levels = levels_of([each for each, _ in stretches], [angle / 100.0 for _, angle in stretches], speeds)
+    assert levels.gravity_sigma is not None
+    off = (np.array([levels.cosine, levels.sine]) - 0.03 * np.array([np.sin(PHASE), np.cos(PHASE)])) / levels.gravity_sigma
+    assert np.abs(off).max() < 3.5
+    assert max(levels.gravity_sigma) < 2e-3
+    runs = [run(angle, each, speed=np.full(400, v)) for (each, angle), v in zip(stretches, speeds, strict=True)]
+    law = {each.path: each for each in fit_position(runs, gravity_order=0.01).estimates}
+    for path, truth in (("quadratic", S1), ("linear", S2), ("viscous", 4e-4)):
+        assert abs(law[path].value - truth) < 3.5 * law[path].sigma < 0.1 * abs(truth)
+
+
+@pytest.mark.parametrize("ways", [(1.0,), (1.0, -1.0)])
+def test_a_table_over_the_angle_has_gravity_at_the_output_if_it_goes_both_ways(ways: tuple[float, ...], tmp_path: Path) -> None:
+    speeds = [2.0 * way for way in ways]
+    torque, angle = map(np.concatenate, zip(*over_200_rad(speeds, 3.0, 6), strict=True))
+    columns = {"angle": angle, "speed": np.repeat(speeds, 400), "torque": torque}
+    sw.Recording(columns, {"angle": "rad", "speed": "rad/s", "torque": "N.m"}).to_csv(tmp_path / "table.csv")
+    found = identify("position-drive", [tmp_path / "table.csv"])
+    gravity = [each.estimate for each in found.parameters if each.estimate.path == "load.gravity_torque"]
+    assert len(gravity) == len(ways) - 1
+    assert all(abs(each.value - 3.0) < 3.5 * each.sigma < 1.0 for each in gravity)
+    assert not found.failed
 
 
 @pytest.mark.slow("identification")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from strainwave.identification.candidates.torsion import fit_loop, held_out_blocks, plain_error
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
-from tests.evidence.drawn import asymmetric_spring
+from tests.evidence.drawn import asymmetric_spring, disturbed_loop
 
 Array = NDArray[np.float64]
 
@@ -253,3 +253,16 @@ def test_plain_least_squares_of_a_loop_are_a_line_with_dry_friction() -> None:
 def test_a_spring_that_differs_between_the_senses_is_taken_if_the_loop_shows_it(seed: int) -> None:
     """Of other programs: a factor on the torque at negative twist, beside a slipping element and zeros that are off."""
     assert asymmetric_spring.outcome(seed).verdict == "right"
+
+
+@pytest.mark.parametrize("seed", [58, 73])
+def test_a_ripple_that_repeats_over_the_twist_is_part_of_the_standard_deviation(seed: int) -> None:
+    assert disturbed_loop.DISTURBANCES[seed % len(disturbed_loop.DISTURBANCES)] == "ripple"
+    found = disturbed_loop.outcome(seed)
+    assert found.verdict != "wrong", found.message
+
+
+def test_a_richer_hysteresis_that_is_not_taken_is_part_of_the_standard_deviation() -> None:
+    """Two elements gain less than a thousandth of the torque over one, and move the first slope by more than three sigma."""
+    found = disturbed_loop.outcome(55)
+    assert found.verdict == "right", found.message

@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.files.gear_set import GearSet
 from strainwave.identification.checks.comparisons import (
     MAX_CHANCE_OF_START_SET,
     between_files,
     gravity_in_ratings,
     other_loads,
+    ratio_in_files,
     with_start_set,
 )
 from strainwave.identification.reading.recognise import Recognised
@@ -175,3 +177,14 @@ def test_gravity_that_would_destroy_the_gear_fails(gravity: float, unit: str, fa
     """The gear of size 20 buckles at 560 N.m, three times which are 1680 N.m."""
     file = FileResult("log.csv", estimates=(FileEstimate("load.gravity_torque", unit, gravity, 1.0, ""),))
     assert [check.failed for check in gravity_in_ratings(SMALL, combine([file]))] == failed
+
+
+@pytest.mark.parametrize(("stated", "given", "failed"), [(50.0, {}, True), (101.0, {}, False), (50.0, {"ratio": 50.0}, None)])
+def test_the_ratio_in_a_file_is_compared_with_the_set(stated: float, given: dict[str, float], failed: bool | None) -> None:
+    file = log("one.csv", {"load.inertia": (1.0, "kg.m2")})
+    assert file.recognised is not None
+    file = replace(file, recognised=replace(file.recognised, ratio=stated, constants=given))
+    checks = list(ratio_in_files(GearSet.read("csg-20-100"), [file]))
+    assert [check.failed for check in checks] == ([] if failed is None else [failed])
+    if failed:
+        assert checks[0].message == "a remark in the file states a ratio of 50, the set CSG-20-100 has 100"

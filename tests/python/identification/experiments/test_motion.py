@@ -32,6 +32,12 @@ def test_the_filter_is_that_of_butterworth_forward_and_backward(cutoff: float) -
     assert motion.filtered(series[0]) == pytest.approx(expected[0], abs=1e-8)
 
 
+def test_a_vibration_slower_than_the_record_leaves_nothing_to_compare() -> None:
+    """Its filter would be 10^9 samples long."""
+    with pytest.raises(ValueError, match="about as fast as a vibration of 1e-07 Hz"):
+        moving(2, 20.0).below(1e-7)
+
+
 @pytest.mark.slow("identification")
 @settings(max_examples=30, deadline=None)
 @given(delay=st.floats(-0.05, 0.05), frequency=st.floats(0.5, 10.0))

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import strainwave as sw
-from strainwave.identification.experiments.torsion_loop import TorsionLoop, series_compliance
+from strainwave.analysis.torsion_loop import series_compliance
+from strainwave.identification.experiments.torsion_loop import TorsionLoop
 
 STAGES = sw.structure.Staged(
     pitch_radius=25e-3,

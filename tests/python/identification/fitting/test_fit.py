@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import strainwave as sw
 from numpy.typing import NDArray
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
 from strainwave.identification.fitting.fit import fit
+from strainwave.parameters import every
 
 SPEED = np.linspace(-60.0, 60.0, 41)[np.arange(41) != 20]
 LAW = sw.friction.Coulomb(coulomb=0.03, breakaway=0.03, viscous=4e-4)
@@ -181,6 +183,23 @@ def test_a_parameter_the_data_do_not_touch_has_no_finite_sigma() -> None:
     assert np.isinf(k3.sigma)
     assert "3 not determined" in repr(found)
     assert found.to_dict()["rows"]["stiffness.k3"]["note"].endswith("not determined by the data")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_knee_that_a_long_step_takes_beyond_the_largest_torque_comes_back(seed: int) -> None:
+    """From the residual of the start, 60 times the noise, the first full step moved the second knee out of reach for good."""
+    start = sw.load("hfuc-25-100")
+    truth = start.replace({"stiffness.k1": 3e4, "stiffness.k2": 4e4})
+    ends = 1.4e-3 * np.array([1.0, -1.0, 1.0, -0.5, 0.5, -0.25, 1.0])
+    twist = np.concatenate([np.linspace(begin, end, 200, endpoint=False) for begin, end in pairwise(ends)])
+    torque = truth.trace(np.concatenate([[0.0], twist, twist]))[-len(twist) :] - 1.5
+    torque += 0.05 * np.random.default_rng(seed).normal(size=len(twist))
+    loop = sw.Recording({"twist": twist + 1e-4, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+    free = [path for path in every(start) if path.startswith(("stiffness.", "hysteresis."))]
+    found, from_truth = (fit(model, loop, free) for model in (start, truth))
+    assert found.rms()[0] == pytest.approx(from_truth.rms()[0], rel=1e-6)
+    assert found.rms()[0] == pytest.approx(0.05, rel=0.05)
+    assert all(np.isfinite(each.sigma) for each in found.estimates)
 
 
 def test_samples_left_out_do_not_take_part() -> None:

@@ -65,9 +65,9 @@ def test_orders_are_as_uncertain_as_amplitude_and_phase_make_them() -> None:
 
 
 def recorded(folder: Path, degrees: float, place: int, rate: float) -> Path:
-    """A file of two encoders at a temperature [°C], of a gear whose order 2 grows by a rate [rad/K]; each moves differently."""
+    """A file of two encoders at a temperature [°C], of a gear whose order 2 grows by a rate [rad/K]; all make one motion."""
     time = np.arange(0.0, 20.0, 0.02)
-    theta = (30.0 + place) * np.sin(0.5 * time + 0.1 * place)
+    theta = 30.0 * np.sin(0.5 * time)
     error = (3e-4 + rate * (degrees - 20.0)) * np.sin(2.0 * theta + 0.3)
     output = -theta / 100.0 - error + np.random.default_rng(place).normal(0.0, 1e-5, len(time))
     columns = {"time": time, "input_angle": theta, "output_angle": output, "temperature": np.full(len(time), degrees)}
@@ -90,6 +90,29 @@ def test_files_at_several_temperatures_determine_how_the_error_changes(tmp_path:
     path = tmp_path / "gear.toml"
     found.accepted.save(path)
     assert GearSet.read(path).gear.kinematic_error == law
+
+
+def test_one_motion_at_two_temperatures_is_two_measurements(tmp_path: Path) -> None:
+    files = [recorded(tmp_path, degrees, place, 2e-6) for place, degrees in enumerate((10.0, 50.0))]
+    found = sw.identify("csg-20-100", files)
+    assert [each.same_as for each in found.files] == ["", "", ""]
+    (change,) = (each.estimate for each in found.parameters if "change" in each.estimate.path)
+    assert abs(change.value - 2e-6) < 3.5 * change.sigma < 1e-7
+
+
+@pytest.mark.parametrize(("rate", "degrees"), [(0.0, (20.0, 20.0)), (2e-6, (20.0, 50.0))])
+def test_a_repeated_motion_is_no_copy_and_a_rounded_copy_is_one(
+    rate: float, degrees: tuple[float, float], tmp_path: Path
+) -> None:
+    """The temperatures are not in the files: the errors of the output, and their noise, differ."""
+    names, units = ("time", "input_angle", "output_angle"), {"time": "s", "input_angle": "rad", "output_angle": "rad"}
+    for place, each in enumerate(degrees):
+        record = sw.Recording.read(recorded(tmp_path, each, place, rate))
+        sw.Recording({name: record[name] for name in names}, units).to_csv(tmp_path / f"run-{place}.csv")
+    rounded = sw.Recording({name: np.round(record[name][::2], 6) for name in names}, units)
+    rounded.to_csv(tmp_path / "rounded.csv")
+    found = sw.identify("csg-20-100", [tmp_path / f"{name}.csv" for name in ("run-0", "run-1", "rounded")])
+    assert [each.same_as for each in found.files] == ["", "", "run-1.csv"]
 
 
 def test_files_at_one_temperature_determine_no_change(tmp_path: Path) -> None:

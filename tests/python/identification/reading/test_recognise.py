@@ -335,3 +335,33 @@ def test_a_slow_log_whose_torque_follows_the_speed_remains_a_log(tmp_path: Path)
     time = np.arange(300.0)
     angle = 2.0 * np.sin(0.2 * time)
     assert recognise(columns_of(tmp_path, time, angle, 0.1 * np.cos(0.2 * time) + 0.01 * angle)).kind == "log"
+
+
+@pytest.mark.parametrize(
+    ("remark", "ratio"),
+    [
+        ("# gear ratio: 50\n", 50.0),
+        ("% Ratio = 1:80\n", 80.0),
+        ("Untersetzung: 100:1\n\n", 100.0),
+        ("# reduction ratio: 120\n", 120.0),
+        ("# signal to noise ratio: 50\n", None),
+        ("# gear ratio of the second stage: 50\n", None),
+        ("", None),
+    ],
+)
+def test_a_remark_states_the_ratio(remark: str, ratio: float | None, tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text(f"{remark}speed [rad/s],torque [N.m]\n10,0.05\n20,0.06\n40,0.07\n80,0.09\n160,0.12\n")
+    assert recognise(path).ratio == ratio
+
+
+def test_columns_that_a_person_does_not_want_are_not_used(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    rows = "10,0.05,20,0\n20,0.06,20,5\n40,0.07,21,0\n80,0.09,22,5\n160,0.12,22,0\n"
+    path.write_text(f"speed [rad/s],torque [N.m],temperature [degC],load_torque [N.m]\n{rows}")
+    assert set(recognise(path).recording.names) == {"speed", "torque", "temperature", "load_torque"}
+    read = recognise(path, FileMapping(columns={"unused": "temperature, load_torque"}))
+    assert set(read.recording.names) == {"speed", "torque"}
+    assert "columns not used: temperature [degC], load_torque [N.m]" in read.remarks
+    with pytest.raises(ValueError, match='has no column "nothing" to be the unused'):
+        recognise(path, FileMapping(columns={"unused": "nothing"}))

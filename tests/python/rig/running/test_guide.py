@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 from strainwave.rig.bench.steps import Step, read_steps
 from strainwave.rig.running import guide
-from strainwave.rig.running.guide import Device, Filled, Look, Reply, Settling, conduct, reply, settle
+from strainwave.rig.running.guide import Device, Filled, Frames, Look, Reply, Settling, conduct, reply, settle
 from strainwave.rig.virtual.render import Scene, render
 from strainwave.rig.virtual.test import Virtual
 
@@ -239,6 +239,17 @@ def test_a_camera_that_cannot_be_used_is_told(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setitem(sys.modules, "cv2", None)
     with pytest.raises(ImportError, match=r"install strainwave\[video\]"):
         Device(0)
+
+
+def test_any_camera_that_gives_arrays_is_a_source(tmp_path: Path) -> None:
+    tiny, grey = np.zeros((4, 6), np.uint8), np.full((20, 30), 77, np.uint8)
+    source = Frames("imageio:<video0>", iter([grey, np.dstack([grey, 0 * grey, 0 * grey]), tiny]))
+    assert Image.open(source.take(tmp_path)).getpixel((0, 0)) == 77
+    assert Image.open(source.take(tmp_path)).getpixel((0, 0)) == (77, 0, 0)
+    with pytest.raises(ValueError, match="two markers need 16 x 16 or more"):
+        source.take(tmp_path)
+    with pytest.raises(OSError, match="imageio:<video0> gives no picture"):
+        source.take(tmp_path)
 
 
 def test_of_a_folder_the_newest_complete_picture_is_taken(tmp_path: Path) -> None:

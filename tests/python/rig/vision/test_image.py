@@ -4,14 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import os
+import struct
 import sys
+from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image as Pillow
-from strainwave.rig.vision.image import CAPTURE_OPTIONS, as_image, by_number, picture_files, read_image, video_images
+from strainwave.rig.virtual.render import Scene, render
+from strainwave.rig.vision import decoding
+from strainwave.rig.vision.angle import measure_angles
+from strainwave.rig.vision.image import (
+    CAPTURE_OPTIONS,
+    as_image,
+    by_number,
+    imageio_arrays,
+    picture_files,
+    read_image,
+    series_images,
+    video_images,
+)
 from strainwave.rig.vision.marker import look
 
 RAMP = np.arange(24 * 32, dtype=np.uint8).reshape(24, 32)
@@ -278,3 +292,104 @@ def test_a_folder_is_read_without_what_lies_elsewhere(tmp_path: Path) -> None:
         picture_files(tmp_path / "folder")
     (tmp_path / "folder" / "own.png").touch()
     assert [path.name for path in picture_files(tmp_path / "folder")] == ["own.png"]
+
+
+# ---- Several pictures ------------------------------------------------------------------------------------------------
+
+
+def turned(degrees: Sequence[float], size: tuple[int, int] = (320, 240)) -> list[np.ndarray]:
+    scene = Scene(size=size, radius=20.0, distance=100.0, noise=0.002)
+    random = np.random.default_rng(0)
+    return [np.asarray(render(scene, np.radians(each), random)) for each in degrees]
+
+
+def series(path: Path, pictures: Sequence[np.ndarray]) -> Path:
+    first, *others = [Pillow.fromarray(each) for each in pictures]
+    first.save(path, save_all=True, append_images=others)
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["gif", "tif"])
+def test_pictures_of_one_file_give_the_angles_of_a_folder(suffix: str, tmp_path: Path) -> None:
+    degrees = (0.0, 5.0, 12.0, 3.0)
+    path = series(tmp_path / f"run.{suffix}", turned(degrees))
+    angles = measure_angles(path)
+    assert [frame.name for frame in angles.useful] == [f"run.{suffix}#{number}" for number in range(1, 5)]
+    assert np.degrees(angles.angle) == pytest.approx(degrees, abs=0.1)
+
+
+def test_arrays_of_any_camera_give_angles() -> None:
+    """As imageio.v3.imiter, or the library of a camera, gives them: one after the other."""
+    angles = measure_angles(each for each in turned((0.0, 7.0)))
+    assert [frame.name for frame in angles.useful] == ["picture 1", "picture 2"]
+    assert np.degrees(angles.angle) == pytest.approx([0.0, 7.0], abs=0.1)
+
+
+def test_of_pictures_of_mixed_sizes_those_of_another_size_have_a_fault() -> None:
+    pictures = [*turned((0.0, 5.0, 10.0)), *turned((15.0,), size=(400, 240))]
+    angles = measure_angles(pictures)
+    assert len(angles.useful) == 3
+    assert "most of the images are 320 x 240 px" in angles.frames[3].fault
+
+
+def test_a_gif_that_claims_to_be_huge_is_refused_before_it_is_decoded(tmp_path: Path) -> None:
+    path = series(tmp_path / "run.gif", [RAMP, RAMP[::-1]])
+    data = bytearray(path.read_bytes())
+    data[6:10] = b"\xff\xff\xff\xff"  # 65535 x 65535 pixels
+    path.write_bytes(data)
+    with pytest.raises(ValueError, match="is too large"):
+        next(series_images(path))
+
+
+def test_small_pictures_without_end_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of kilobytes may contain pictures for hours: their pixels are bounded in all."""
+    path = series(tmp_path / "run.gif", [RAMP, RAMP[::-1]] * 20)
+    assert len(list(series_images(path))) == 40
+    monkeypatch.setattr(decoding, "MAX_SERIES_PIXELS", 10 * RAMP.size)
+    pictures = series_images(path)
+    assert [next(pictures).name for _ in range(10)][-1] == "run.gif#10"
+    with pytest.raises(ValueError, match="has more than can be read: 10000 pictures"):
+        next(pictures)
+
+
+@pytest.mark.parametrize("suffix", ["gif", "tif"])
+def test_no_damaged_series_ends_in_anything_but_one_line(suffix: str, tmp_path: Path) -> None:
+    random = np.random.default_rng(1)
+    whole = series(tmp_path / f"run.{suffix}", [RAMP, RAMP[::-1], RAMP]).read_bytes()
+    path = tmp_path / f"damaged.{suffix}"
+    refused = list[str]()
+    for cut in random.integers(8, len(whole), 20).tolist():
+        damaged = bytearray(whole[:cut])
+        damaged[int(random.integers(6, cut))] ^= int(random.integers(1, 256))
+        path.write_bytes(damaged)
+        try:
+            list(series_images(path))
+        except ValueError as error:
+            refused.append(str(error))
+    assert len(refused) > 10
+    assert not any("\n" in each for each in refused)
+
+
+def test_pages_that_follow_each_other_in_a_circle_are_refused(tmp_path: Path) -> None:
+    path = series(tmp_path / "run.tif", [RAMP, RAMP[::-1]])
+    data = bytearray(path.read_bytes())
+    (first,) = struct.unpack_from("<L", data, 4)
+    (count,) = struct.unpack_from("<H", data, first)
+    (second,) = struct.unpack_from("<L", data, first + 2 + 12 * count)
+    (count,) = struct.unpack_from("<H", data, second)
+    struct.pack_into("<L", data, second + 2 + 12 * count, first)
+    path.write_bytes(data)
+    with pytest.raises(ValueError, match="has more than 10000 pages, or the same one again"):
+        list(series_images(path))
+
+
+@pytest.mark.parametrize("source", ["https://example.org/a.gif", "imageio:chelsea.png", "/etc/hostname", "<video0>/x", ""])
+def test_what_is_no_camera_of_imageio_is_refused(source: str) -> None:
+    with pytest.raises(ValueError, match="is no camera of imageio; write it as <video0>"):
+        imageio_arrays(source)
+
+
+def test_a_camera_of_imageio_needs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "imageio.v3", None)
+    with pytest.raises(ImportError, match="pip install 'imageio"):
+        imageio_arrays("<video0>")

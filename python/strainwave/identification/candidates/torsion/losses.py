@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave._core import Gear
+from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
 from strainwave.identification.experiments.loss_loop import MAX_REACH_DIFFERENCE, LossLoop
@@ -238,6 +239,61 @@ def loss_shares(loops: Sequence[Recording], gear: Gear) -> LossShares:
     >>> [round(result[name].value, 3) for name in ("gear, dry", "mesh, in proportion to the load")]
     [0.5, 0.02]
     """
+    return _shares(*_of_recordings(loops, gear))
+
+
+@dataclass(frozen=True, eq=False)
+class FurtherLoops(ComparedByFields):
+    """Loops that could be measured, and what they would determine of the shares of the sources.
+
+    Unknowns are the shares, then what else is unknown of shapes and temperatures, all of a size about 1.
+
+    Attributes:
+        shares: result of the loops that were measured
+        covariance: of the unknowns by these, shape (p, p), infinite in no direction
+        floors: standard deviation of each share that no loop reduces, as real widths depart from the forms
+        loops: that could be measured
+        information: of each about the unknowns, shape (loops, p, p)
+        temperature: of the largest loop that was measured [K]
+    """
+
+    shares: LossShares
+    covariance: Array
+    floors: Array
+    loops: tuple[LossLoop, ...]
+    information: Array
+    temperature: float
+
+
+def further_loops(loops: Sequence[Recording], gear: Gear) -> FurtherLoops:
+    """Return the loops that could be measured after those of `loss_shares`, whose arguments and errors these are."""
+    fit, shifts = _of_recordings(loops, gear)
+    total = float(fit.unit_loss @ fit.amplitudes)
+    into = _unknowns(fit, total)
+    options, back = [*_planned(fit)], np.linalg.inv(into)
+    information = np.stack([back.T @ rows.T @ rows @ back for _, rows in options])
+    covariance = into @ fit.covariance @ into.T
+    floor = float(np.hypot(SHAPE_SIGMA, fit.misfit))
+    by_noise = np.sqrt(np.diag(covariance)[: len(fit.widths.sources)]) > MAX_SHARE_SIGMA
+    floors = np.where(by_noise, floor, np.hypot(floor, np.abs(shifts).max(axis=0)))
+    planned = tuple(loop for loop, _ in options)
+    return FurtherLoops(_shares(fit, shifts), covariance, floors, planned, information, fit.widths.reference_temperature)
+
+
+def _unknowns(fit: _Fit, total: float) -> Array:
+    """Return the matrix that makes shares, differences of shapes of one source, and falls of amplitudes and falls."""
+    added = _added(fit.widths.sources)
+    shapes = added.shape[1]
+    first = [int(np.flatnonzero(row)[0]) for row in added]
+    differences = np.eye(shapes)[[place for place in range(shapes) if place not in first]]
+    into = np.zeros((shapes + len(fit.falls),) * 2)
+    into[:shapes, :shapes] = np.concatenate((added, differences)) * (fit.unit_loss / total)
+    into[shapes:, shapes:] = np.eye(len(fit.falls)) / FALL_SIGMA
+    return into
+
+
+def _of_recordings(loops: Sequence[Recording], gear: Gear) -> tuple[_Fit, Array]:
+    """Return the fit to loops, and the change of the shares if more or less next to reversals is left out."""
     measured = [LossLoop.of(each, arguments.gear(gear)) for each in loops]
     if not measured:
         raise ValueError("loss_shares needs at least one torsion loop")
@@ -251,7 +307,7 @@ def loss_shares(loops: Sequence[Recording], gear: Gear) -> LossShares:
     near = _fitted([loop.apart(nearest) for loop in measured])
     at_ends = [(curve.low, curve.high) for curve in near.curves]
     fit, *further = (_fitted([loop.apart(share) for loop in measured], at_ends) for share in others)
-    return _shares(fit, np.array([each.shares - fit.shares for each in (near, *further)]))
+    return fit, np.array([each.shares - fit.shares for each in (near, *further)])
 
 
 # ---- Fit -------------------------------------------------------------------------------------------------------------
