@@ -138,6 +138,7 @@ def of_orders() -> Iterator[Any]:
     turned = run_up()
     yield from (sw.transmission_error(encoders()), sw.orders.ripple(turned, "torque", angle="input_angle", side="input"))
     yield from (sw.orders.order_amplitudes(turned, "torque", [1.0, 2.0]), sw.orders.campbell(turned, "torque"))
+    yield from (sw.orders.ring_modes(turned, "torque", orders=[1.0, 2.0]), sw.orders.bearing_candidates([10.37], [0.01]))
     yield from (*sw.diagnose.order_lines(turned, "torque", [2.0]), sw.orders.order_tracks(turned, "torque", [2.0]))
     record = {"speed": 20.0, "duration": 2.0, "sample_rate": 500.0, "noise": 0.02, "order": 2.0}
     yield sw.diagnose.detection_limit(sw.load("tilt-actuator-lumped"), load_torque=20.0, **record)

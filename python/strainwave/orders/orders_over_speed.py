@@ -76,6 +76,11 @@ class Turning:
     remarks: tuple[str, ...]
 
     @property
+    def path(self) -> Array:
+        """Largest angle so far: noise of an encoder turns back [rad], shape (n,)."""
+        return np.asarray(np.maximum.accumulate(self.angle))
+
+    @property
     def turns(self) -> float:
         """Revolutions of the shaft."""
         return float(self.angle[-1] - self.angle[0]) / tau
@@ -183,7 +188,7 @@ def _separated(orders: Sequence[float]) -> tuple[list[float], list[str]]:
 
 def _sampled(orders: Sequence[float], recordings: Sequence[Turning]) -> tuple[list[float], list[str]]:
     """Return the orders that the samples can follow at some speed, and remarks on the others."""
-    top = max(MAX_WAVE_STEP / float(np.diff(each.angle).min()) for each in recordings)
+    top = max(MAX_WAVE_STEP / max(float(np.quantile(np.diff(each.angle), 0.05)), 1e-300) for each in recordings)
     fast = [number(order, 5) for order in orders if order >= top]
     remarks = [f"orders {listed(fast)} pass faster than the samples can follow"] if fast else []
     return [order for order in orders if order < top], remarks
@@ -191,7 +196,7 @@ def _sampled(orders: Sequence[float], recordings: Sequence[Turning]) -> tuple[li
 
 def _stretches(recording: Turning, turns: float, orders: int, recordings: int) -> Iterator[tuple[int, int]]:
     """Yield first and one past the last sample of stretches, one after the other."""
-    angle, speed = recording.angle, recording.speed
+    angle, speed = recording.path, recording.speed
     turns = max(turns, recording.turns / (MAX_STRETCHES // recordings))
     fewest = MIN_STRETCHES_OF_RECORDING if recordings < MIN_RECORDINGS_OF_ONE else 1
     widest = max(recording.turns / fewest, turns) * tau
@@ -211,7 +216,7 @@ def _stretches(recording: Turning, turns: float, orders: int, recordings: int) -
 def _amplitudes(recording: Turning, start: int, stop: int, orders: Sequence[float]) -> tuple[Complex, float] | None:
     """Return the amplitudes of a stretch, nan for orders that its samples cannot follow, and their standard deviation."""
     angle = recording.angle[start:stop]
-    slow = np.array(orders) * float(np.diff(angle).max()) < MAX_WAVE_STEP
+    slow = np.array(orders) * float(np.quantile(np.diff(angle), 0.9)) < MAX_WAVE_STEP
     along = (angle - angle.mean()) / max(float(np.ptp(angle)), 1e-300)
     waves = order_waves(angle, np.array(orders)[slow].tolist())
     columns = np.concatenate([along[:, None] ** np.arange(TREND_POWERS), waves, along[:, None] * waves], axis=1)
@@ -282,8 +287,9 @@ def _segments(recording: Turning, turns: float) -> Iterator[Array]:
     per_turn = 4 * MAX_LOOKED_FOR
     count, lines = int(turns * per_turn), int(MAX_LOOKED_FOR * turns)
     path = np.arange(int(recording.turns * per_turn)) * (tau / per_turn) + recording.angle[0]
-    series = Akima1DInterpolator(recording.angle, recording.series)(path)
-    steps = np.interp(path, recording.angle[1:], np.diff(recording.angle))
+    ahead = np.diff(recording.path, prepend=-np.inf) > 0.0  # samples of an encoder may repeat
+    series = Akima1DInterpolator(recording.angle[ahead], recording.series[ahead])(path)
+    steps = np.interp(path, recording.angle[ahead][1:], np.diff(recording.angle[ahead]))
     window = np.hanning(count + 1)[:-1]
     along = np.linspace(-1.0, 1.0, count)
     trend = np.linalg.qr(along[:, None] ** np.arange(TREND_POWERS))[0]

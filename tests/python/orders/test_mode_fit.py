@@ -7,7 +7,7 @@ from math import tau
 import numpy as np
 import pytest
 from strainwave.orders.mode_fit import Line, ModeProblem
-from strainwave.orders.orders_over_speed import OrdersOverSpeed, Turning, orders_over_speed
+from strainwave.orders.orders_over_speed import OrdersOverSpeed, Turning, orders_over_speed, uneven_orders
 
 ORDERS = np.array([2.0, 4.0])
 BOTH = (True, True, True, True)
@@ -91,3 +91,13 @@ def integrated(natural: float, damping: float, order: float) -> np.ndarray:
         state = state + step / 6.0 * (one + 2.0 * two + 2.0 * three + four)
     path.append(state[0])
     return np.array(path)[::2][:3000]
+
+
+def test_an_encoder_may_repeat_and_turn_back_by_a_count() -> None:
+    time = np.arange(0.0, 30.0, 2e-3)
+    count = tau / 4096.0
+    jitter = np.random.default_rng(3).integers(-1, 2, len(time))
+    angle = count * (np.round(12.0 * time / count) + jitter)
+    wave = np.sin(7.37 * 12.0 * time) + np.random.default_rng(4).normal(0.0, 0.1, len(time))
+    (line,) = uneven_orders([Turning(time, angle, np.full(len(time), 12.0), wave, 0.0, ())])
+    assert line.order == pytest.approx(7.37, abs=2.0 * line.sigma)
