@@ -47,7 +47,7 @@ MIN_STRETCHES_IN_PEAK = 4  # within that reach, of all orders that pass the mode
 MIN_SIGNIFICANCE_OF_ORDER = 10.0  # standard deviations of a coefficient, from which an order counts as passing a mode
 SIDEBAND_WIDTHS = 3.0  # half widths of a peak, within which another order's peak lies at the same speed
 MAX_SPLIT = 0.02  # of the frequency, between both lines of a ring that the lobes hold in part
-MAX_FROM_WHOLE_WAVES = 0.25  # of a slope, with twice its standard deviation, to be that of a whole number of waves
+MAX_FROM_WHOLE_WAVES = 0.08  # of a slope, with twice its standard deviation, to be that of a whole number of waves
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
 MAX_CANDIDATE_WAVES = 6
 MAX_DAMPING_SIGMA = 0.5  # of the damping, over which it is not stated
@@ -146,6 +146,10 @@ class RingModes(ComparedByFields, Pictured):
     def _rows(self) -> Iterator[Row]:
         for place, mode in enumerate(self.modes, 1):
             yield Row(f"mode {place}", words_of(mode))
+        for order, amplitude in zip(self.orders, np.abs(self.amplitude), strict=True):
+            at = int(np.nanargmax(amplitude))
+            place = f"largest at {number(float(self.speed[at]) * 30.0 / np.pi, 4)} 1/min"
+            yield Row(f"order {number(order, 5)}", float(amplitude[at]), self.unit, note=place)
         if self.bearing is not None:
             yield Row("bearing", self.bearing._headline())
 
