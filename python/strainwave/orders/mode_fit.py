@@ -206,14 +206,20 @@ class ModeProblem:
     # ---- Columns ---------------------------------------------------------------------------------------------------
 
     @cached_property
+    def _varying(self) -> list[int]:
+        """Places of the recordings in which the speed changes."""
+        recordings = enumerate(self.spectrum.recordings)
+        return [place for place, of in recordings if np.ptp(of.speed) > CONSTANT_SPEED_SPREAD * of.speed.max()]
+
+    @property
+    def varying(self) -> int:
+        """Number of recordings in which the speed changes."""
+        return len(self._varying)
+
+    @cached_property
     def _times(self) -> _Times | None:
         """Times of the recordings whose speed changes; None if none does."""
-        spectrum = self.spectrum
-        varying = [
-            place
-            for place, recording in enumerate(spectrum.recordings)
-            if np.ptp(recording.speed) > CONSTANT_SPEED_SPREAD * recording.speed.max()
-        ]
+        spectrum, varying = self.spectrum, self._varying
         rows = np.flatnonzero(np.isin(spectrum.stretches[:, 2], varying))
         if not len(rows):
             return None

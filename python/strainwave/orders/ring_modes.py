@@ -52,7 +52,9 @@ MAX_ODDS = 10.0  # by which one number of waves must be more probable than each 
 MAX_CANDIDATE_WAVES = 6
 MAX_DAMPING_SIGMA = 0.5  # of the damping, over which it is not stated
 SAME_MODE_SIGMA = 3.0  # standard deviations between the frequencies of both lines of a mode
-MIN_DAMPING_SIGMA = 0.03  # of the damping: forces are not quite constant along a peak (assumed)
+MIN_DAMPING_SIGMA = 0.06  # of the damping: forces are not quite constant along a peak (measured on rings by finite elements)
+MIN_DAMPING_SIGMA_OF_RUN_UP = 0.12  # of the damping, if the speed changes in a peak
+MIN_ORDER_RATIO = 1.25  # of two orders that determine waves: peaks of closer ones fit several whole slopes
 MIN_WIDTH_SIGMA = 0.05  # of the half width of a peak, in its frequency, for the same reason (assumed)
 MIN_FREQUENCY_SIGMA = 2e-4  # of the frequency: clocks and speeds are not better
 BALL_HARMONICS = (1, 2, 3, 4)  # of an order that is no whole one: a whole order beside them may be of the balls, too
@@ -148,8 +150,8 @@ class RingModes(ComparedByFields, Pictured):
             yield Row(f"mode {place}", words_of(mode))
         for order, amplitude in zip(self.orders, np.abs(self.amplitude), strict=True):
             at = int(np.nanargmax(amplitude))
-            place = f"largest at {number(float(self.speed[at]) * 30.0 / np.pi, 4)} 1/min"
-            yield Row(f"order {number(order, 5)}", float(amplitude[at]), self.unit, note=place)
+            where = f"largest at {number(float(self.speed[at]) * 30.0 / np.pi, 4)} 1/min"
+            yield Row(f"order {number(order, 5)}", float(amplitude[at]), self.unit, note=where)
         if self.bearing is not None:
             yield Row("bearing", self.bearing._headline())
 
@@ -393,7 +395,8 @@ def _strong(problem: ModeProblem, fit: Fitted, place: int) -> set[float]:
 def _mode(problem: ModeProblem, passing: _Passing) -> RingMode | None:
     """Return a mode as far as it is determined; None if its frequency is not."""
     line, sigma = passing.line, passing.sigma
-    damping, spread = line.damping, float(np.hypot(sigma[1], MIN_DAMPING_SIGMA))
+    least = MIN_DAMPING_SIGMA_OF_RUN_UP if problem.varying else MIN_DAMPING_SIGMA
+    damping, spread = line.damping, float(np.hypot(sigma[1], least))
     if not spread < MAX_DAMPING_SIGMA:
         damping = nan
     frequency_sigma = float(np.sqrt(sigma[0] ** 2 + MIN_FREQUENCY_SIGMA**2 + (MIN_WIDTH_SIGMA * line.damping) ** 2))
@@ -409,10 +412,11 @@ def _mode(problem: ModeProblem, passing: _Passing) -> RingMode | None:
         why = "a sensor that stands sees each order at ω over its own order, whatever the waves: compare with an encoder"
         return replace(mode, separated_by=why)
     if len(passing.orders) > 1:
-        is_whole = from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals
+        apart = max(passing.orders) > MIN_ORDER_RATIO * min(passing.orders)
+        is_whole = from_whole < MAX_FROM_WHOLE_WAVES and not passing.rivals and apart
         return replace(mode, waves=whole, slope=slope, slope_sigma=slope_sigma) if is_whole else None
     candidates = _candidates(problem, passing)  # the shape of one order's peak is no evidence of a slope
-    if len(candidates) < 2:
+    if len(candidates) < 2 or problem.varying > 1:  # where ramps meet, an order against the other spline may leave a peak
         return None
     why = _separated_by(problem, passing, candidates)
     return replace(mode, natural_frequency=nan, natural_frequency_sigma=nan, candidates=candidates, separated_by=why)
