@@ -34,7 +34,7 @@ MAX_SIGMAS = 2.5  # standard deviations by which an order may lie beside its cau
 STEPS_PER_SIGMA = 4.0  # of the diameter ratio that are tried, for the order that depends most on it
 MAX_STEPS = 40_000
 MAX_LISTED = 4  # candidates in words
-MIN_ORDERS_FOR_STRANGER = 3  # from which one order may have another cause
+ORDERS_PER_STRANGER = 3  # explained orders, of which one may have another cause
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class BearingCandidates(Presented):
     """Bearings that explain orders.
 
     Attributes:
-        candidates: all that explain the orders, of three orders and more all but one, fewest balls first
+        candidates: all that explain the most orders, or two thirds of them, fewest balls first
         balls: their number, if all candidates have the same; else None
         orders: that were to be explained [1]
         remarks: what is not separated, and what would separate it
@@ -121,7 +121,7 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     low, high = (0.5 * (1.0 + ratio) * (1.0 - outer_speed) for ratio in DIAMETER_RATIOS)
     tried = [(balls, *_explained(balls, wanted, spread, low, high)) for balls in BALL_COUNTS]
     most = max(int(count.max()) for _, _, count in tried)
-    least = most - 1 if most >= MIN_ORDERS_FOR_STRANGER else most
+    least = most - most // ORDERS_PER_STRANGER
     best = tuple(
         _candidate(balls, passes[part], wanted, spread, outer_speed)
         for balls, passes, count in tried

@@ -51,7 +51,6 @@ MAX_FROM_WHOLE_WAVES = 0.08  # of a slope, with twice its standard deviation, to
 MAX_ODDS = 10.0  # by which one number of waves must be more probable than each other
 MAX_CANDIDATE_WAVES = 6
 MAX_DAMPING_SIGMA = 0.5  # of the damping, over which it is not stated
-SAME_MODE_SIGMA = 3.0  # standard deviations between the frequencies of both lines of a mode
 MIN_DAMPING_SIGMA = 0.06  # of the damping: forces are not quite constant along a peak (measured on rings by finite elements)
 MIN_DAMPING_SIGMA_OF_RUN_UP = 0.12  # of the damping, if the speed changes in a peak
 MIN_ORDER_RATIO = 1.25  # of two orders that determine waves: peaks of closer ones fit several whole slopes
