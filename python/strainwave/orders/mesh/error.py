@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from strainwave import stiffness, variation
 from strainwave.orders.mesh.harmonics import Harmonics
-from strainwave.orders.mesh.loads import RELATIVE_NOISE, SpringFit, load_fit, spring_fit
+from strainwave.orders.mesh.loads import RELATIVE_NOISE, LoadFit, SpringFit, load_fit, spring_fit
 from strainwave.presentation import counted
 
 Array = NDArray[np.float64]
@@ -94,23 +94,14 @@ class ErrorFit:
     Attributes:
         spring: of the whole gear; None if it is not determined
         wound: True if the spring follows from the transmission error
-        error: complex amplitudes of the error without load [rad], shape (h,); zeros of those that noise makes
-        sigma: standard deviation of each [rad], shape (h,)
-        sensitivity, sensitivity_sigma: relative fall of the error with the torque [1/(N.m)], and its standard deviation
         variation: of the stiffness
-        misfit: root mean square over the loads of what the laws leave of each order [rad], shape (h,)
-        remarks: in words
+        orders: of the error, over the loads; without those that noise makes
     """
 
     spring: SpringFit | None
     wound: bool
-    error: Complex
-    sigma: Array
-    sensitivity: float
-    sensitivity_sigma: float
     variation: StiffnessVariation
-    misfit: Array
-    remarks: tuple[str, ...]
+    orders: LoadFit
 
 
 def error_fit(
@@ -136,22 +127,22 @@ def error_fit(
     for _ in range(ROUNDS):
         spring = _spring(error, of_spring, wound, shift)
         compliance = spring.compliance(error.torque)[loads] if spring is not None and given is None else None
-        fit = load_fit(error.torque[loads], compliance, (error.waves - beyond)[loads, kept], error.noise)
+        fit = load_fit(error.torque[loads], compliance, np.where(kept, error.waves - beyond, 0.0)[loads], error.noise)
         if given is None:
-            varying = StiffnessVariation.of_waves("stiffness", error.orders, _placed(fit.variation, kept))
+            varying = StiffnessVariation.of_waves("stiffness", error.orders, fit.variation)
         now = np.concatenate([fit.error, fit.variation])
         if spring is None or (varying.law is None and fit.sensitivity == 0.0):
             break
         if before is not None and np.allclose(now, before, rtol=CONVERGED, atol=0.0):
             break
         before = now
-        shift, beyond = _beyond_first_order(spring, error, _placed(fit.error, kept), fit.sensitivity, varying)
+        shift, beyond = _beyond_first_order(spring, error, fit.error, fit.sensitivity, varying)
         if given is not None:
             beyond += np.outer(-error.torque * spring.compliance(error.torque), varying.waves)
-    waves, sigma, misfit = (_placed(each, kept) for each in (fit.error, fit.sigma, fit.misfit))
-    by_noise = error.noise / np.sqrt(len(error.torque[loads])) * np.sqrt(log(error.waves.size / false_alarm))
-    waves[np.abs(waves) < max(by_noise, RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0)))] = 0.0
-    return ErrorFit(spring, wound, waves, sigma.real, fit.sensitivity, fit.sensitivity_sigma, varying, misfit.real, fit.remarks)
+    by_noise = error.noise * np.sqrt(log(error.waves.size / false_alarm) / len(error.torque[loads]))
+    least = max(by_noise, RELATIVE_NOISE * float(np.abs(fit.error).max(initial=0.0)))
+    fit = replace(fit, error=np.where(np.abs(fit.error) < least, 0.0, fit.error))
+    return ErrorFit(spring, wound, varying, fit)
 
 
 def _spring(error: Harmonics, of_spring: Harmonics | None, wound: bool, shift: Array) -> SpringFit | None:
@@ -159,13 +150,6 @@ def _spring(error: Harmonics, of_spring: Harmonics | None, wound: bool, shift: A
     if wound:
         return spring_fit(error.torque, error.mean - shift, 0.5 * error.noise)
     return None if of_spring is None else spring_by_tangents(of_spring)
-
-
-def _placed(waves: NDArray[Any], kept: NDArray[np.bool_]) -> Complex:
-    """Return waves of the orders that are kept among those of all orders."""
-    placed = np.zeros(len(kept), complex)
-    placed[kept] = waves
-    return placed
 
 
 def _beyond_first_order(

@@ -243,11 +243,13 @@ def _with_error(
     squares, rest = float(np.mean(varying[rows] ** 2)), float(np.mean(left[rows] ** 2))
     return replace(
         laws,
-        kinematic_error=law if fit.sensitivity == 0.0 else kinematic_error.Scaled(law=law, load_sensitivity=fit.sensitivity),
+        kinematic_error=law
+        if fit.orders.sensitivity == 0.0
+        else kinematic_error.Scaled(law=law, load_sensitivity=fit.orders.sensitivity),
         stiffness=None if fit.spring is None else fit.spring.law,
         stiffness_variation=fit.variation.law,
         orders=orders,
-        sensitivity_sigma=fit.sensitivity_sigma,
+        sensitivity_sigma=fit.orders.sensitivity_sigma,
         residual=float(np.sqrt(rest)),
         explained_share=1.0 - rest / squares if squares > 0.0 else 0.0,
         remarks=(*laws.remarks, *remarks, *left_out),
@@ -257,14 +259,14 @@ def _with_error(
 def _orders(error: Harmonics, loads: slice, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], list[str]]:
     """Return the orders of the error, the strongest first, and what is left out."""
     power = np.mean(np.abs(error.waves[loads]) ** 2, axis=0)
-    present = np.flatnonzero(fit.error)
-    strongest = present[np.argsort(-np.abs(fit.error[present]), kind="stable")]
+    present = np.flatnonzero(fit.orders.error)
+    strongest = present[np.argsort(-np.abs(fit.orders.error[present]), kind="stable")]
     orders = tuple(
         MeshOrder(
             float(error.orders[each]),
-            float(abs(fit.error[each])),
-            float(fit.sigma[each]),
-            float(np.angle(fit.error[each])),
+            float(abs(fit.orders.error[each])),
+            float(fit.orders.sigma[each]),
+            float(np.angle(fit.orders.error[each])),
             float(power[each] / power.sum()),
         )
         for each in strongest[:MAX_ERROR_ORDERS].tolist()
@@ -272,7 +274,7 @@ def _orders(error: Harmonics, loads: slice, fit: ErrorFit) -> tuple[tuple[MeshOr
     rest = np.sort(strongest[MAX_ERROR_ORDERS:])
     if not len(rest):
         return orders, []
-    size = typeset.quantity(float(np.abs(fit.error[rest]).max()), "rad")
+    size = typeset.quantity(float(np.abs(fit.orders.error[rest]).max()), "rad")
     return orders, [f"a law has {MAX_ERROR_ORDERS} orders; {counted(len(rest), 'order')} of up to {size} left out"]
 
 
@@ -280,9 +282,9 @@ def _predicted(table: MeshTable, law: Any, fit: ErrorFit) -> Array:
     """Return the transmission error of the laws [rad], shape (n,)."""
     error = np.asarray(law.error(table.angle))
     if fit.spring is None:
-        return np.asarray(error / (1.0 + fit.sensitivity * np.abs(table.torque)) ** 2)
+        return np.asarray(error / (1.0 + fit.orders.sensitivity * np.abs(table.torque)) ** 2)
     factor = np.ones(len(error)) if fit.variation.law is None else np.asarray(fit.variation.law.factor(table.angle))
-    return transmission_error(fit.spring.law, error, fit.sensitivity, factor, table.torque)
+    return transmission_error(fit.spring.law, error, fit.orders.sensitivity, factor, table.torque)
 
 
 def _over_loads(of_mesh: Harmonics | None) -> Iterator[str]:
@@ -299,7 +301,7 @@ def _remarks(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> It
     """Yield all remarks on the fit of the transmission error."""
     yield from _of_spring(fit, error)
     yield from _of_slope(fit, error, of_spring)
-    yield from fit.remarks
+    yield from fit.orders.remarks
     yield from _of_orders(error, fit)
     yield from _of_noise(error, fit)
 
@@ -335,7 +337,7 @@ def _of_slope(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> I
 
 def _of_orders(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     """Yield a remark on orders that change with the load in another way than all together."""
-    missed = error.orders[(np.abs(fit.error) > 0.0) & (fit.misfit > NAMED_MISFIT * np.abs(fit.error))]
+    missed = error.orders[(np.abs(fit.orders.error) > 0.0) & (fit.orders.misfit > NAMED_MISFIT * np.abs(fit.orders.error))]
     if len(missed):
         names = listed(f"{order:g}" for order in missed.tolist())
         missing = f"it misses that of order {names} by a quarter of the amplitude or more"
@@ -344,7 +346,7 @@ def _of_orders(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
 
 def _of_noise(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     """Yield a remark on orders that the noise of the solver hides."""
-    left = len(error.orders) - int(np.count_nonzero(fit.error))
+    left = len(error.orders) - int(np.count_nonzero(fit.orders.error))
     if left and error.noise > 0.0:
         hidden = f"{counted(left, 'order')} of {len(error.orders)} are within the noise of the solver"
         yield f"{hidden}, {typeset.quantity(error.noise, 'rad')} of amplitude at a load, and left out"

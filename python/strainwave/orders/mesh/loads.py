@@ -147,6 +147,11 @@ class _Model:
     left: Complex
 
     @property
+    def orders(self) -> int:
+        """Number of orders that are not left out."""
+        return int(np.count_nonzero(self.coefficients[0]))
+
+    @property
     def squares(self) -> float:
         """Sum of the squares that it leaves."""
         return float(np.sum(np.abs(self.left) ** 2))
@@ -154,11 +159,16 @@ class _Model:
     @property
     def unknowns(self) -> int:
         """Number of its real unknowns."""
-        return 2 * self.coefficients.size + self.falls
+        return 2 * len(self.coefficients) * self.orders + self.falls
+
+    @property
+    def data(self) -> int:
+        """Number of real numbers that it is fitted to."""
+        return 2 * len(self.left) * self.orders
 
     def criterion(self, noise: float) -> float:
         """Bayesian information criterion (Schwarz 1978)."""
-        return 2.0 * self.squares / noise**2 + self.unknowns * float(np.log(2.0 * self.left.size))
+        return 2.0 * self.squares / noise**2 + self.unknowns * float(np.log(self.data))
 
     def slope(self, torque: Array) -> tuple[Complex, Complex]:
         """Return the change of the waves with the sensitivity: what the coefficients make up of it, and what they do not."""
@@ -169,10 +179,8 @@ class _Model:
 
     def scatter(self, noise: float) -> Array:
         """Return the standard deviation of a wave, by noise or by what the model leaves of its order [rad], shape (h,)."""
-        freedom = 2 * self.left.size - self.unknowns
-        mean_squares = np.mean(np.abs(self.left) ** 2, axis=0)
-        left = np.sqrt(mean_squares * 2 * self.left.size / freedom) if freedom > 0 else np.zeros_like(mean_squares)
-        return np.asarray(np.maximum(noise, left))
+        per_freedom = self.data / max(self.data - self.unknowns, 1)  # one load leaves nothing
+        return np.asarray(np.maximum(noise, np.sqrt(per_freedom * np.mean(np.abs(self.left) ** 2, axis=0))))
 
     def sigmas(self, torque: Array, noise: float) -> tuple[float, Array]:
         """Return the standard deviations of the sensitivity [1/(N.m)] and of the coefficients, shape (p, h)."""
@@ -192,12 +200,12 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     Args:
         torque: of the loads [N.m], shape (m,)
         compliance: at each load [rad/(N.m)], shape (m,); None if the variation of the stiffness is no unknown
-        waves: complex amplitudes [rad], shape (m, h)
+        waves: complex amplitudes [rad], shape (m, h); 0 of orders left out
         noise: standard deviation of a complex amplitude by the noise of the solver [rad]
     """
-    if not waves.shape[1]:
-        none = np.zeros(0, complex)
-        return LoadFit(none, np.zeros(0), none, 0.0, 0.0, np.zeros(0), ())
+    none = np.zeros(waves.shape[1])
+    if not waves.any():
+        return LoadFit(none.astype(complex), none, none.astype(complex), 0.0, 0.0, none, ())
     believed = max(noise, RELATIVE_NOISE * float(np.abs(waves).max()), 1e-300)
     varying = None if compliance is None else -torque * compliance
     constant = _model(torque, None, waves, falls=False)
@@ -210,13 +218,13 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
         remarks = (_few_loads(torque, waves),)
     elif chosen is not constant and varying is not None and not torque.min() < 0.0 < torque.max():
         chosen, remarks = constant, (_not_separable(torque, waves),)
-    elif (left := float(np.sqrt(chosen.squares / waves.size))) > NAMED_MISFIT * believed:
+    elif (left := float(np.sqrt(2.0 * chosen.squares / chosen.data))) > NAMED_MISFIT * believed:
         no_law = f"{quantity(left, 'rad')} of it (rms) is no fall and no variation as the laws have it"
         remarks = (f"{_change(torque, waves)}; {no_law}",)
     of_fall, of_orders = chosen.sigmas(torque, noise)
     misfit = np.sqrt(np.mean(np.abs(chosen.left) ** 2, axis=0))
     sigma = np.hypot(of_orders[0], np.sqrt(np.maximum(misfit**2 - noise**2, 0.0)))  # no number of loads averages a misfit out
-    variation = np.zeros(waves.shape[1], complex)
+    variation = none.astype(complex)
     if len(chosen.coefficients) > 1:
         # Products of error and variation are in other orders: what is left of one order may be in another one as a variation.
         least = SIGNIFICANCE_SIGMA * float(of_orders[1].max())
