@@ -10,7 +10,7 @@ each of its columns.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import tau
 from pathlib import Path
@@ -218,24 +218,28 @@ def _loads_of_matrix(opened: ArrayTable, label: Label, torque: Array, units: Map
 
 def _wanted(opened: OpenTable, columns: Mapping[str, str], wide: Mapping[str, _Load]) -> dict[str, str]:
     """Return the column of the file for each name."""
-    arguments.mapping("columns", columns, '{"transmission_error": "TE"}')
-    there = _names(opened)
-    known = [*PLACE_UNITS, *QUANTITY_UNITS]
-    wanted = {name: there[name] for name in known if name in there} | {name: name for name in wide} | dict(columns)
-    if unknown := [name for name in columns if name not in known]:
-        raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of such a table; they are {listed(known)}")
-    both = next((name for name in wanted if name not in ("angle", *wide)), "") if wide else ""
-    if both:
-        raise ValueError(f"{opened.file} has columns of single loads and a column {both}; leave one of the two out")
+    wanted = _given_or_there(opened, columns, [*PLACE_UNITS, *QUANTITY_UNITS], '{"transmission_error": "TE"}')
+    there = listed(_names(opened))
+    if both := [name for name in wanted if wide and name != "angle"]:
+        raise ValueError(f"{opened.file} has columns of single loads and a column {both[0]}; leave one of the two out")
     for name, example in (("angle", "phi"), *(() if wide else (("torque", "load"),))):
         if name not in wanted:
-            missing = f"{opened.file} has no column {name}; it has {listed(there)}; name it as columns={{{quoted(name)}: "
+            missing = f"{opened.file} has no column {name}; it has {there}; name it as columns={{{quoted(name)}: "
             more = ", or add it: 0 N.m of a table without load" if name == "torque" else ""
             raise ValueError(one_line(f"{missing}{quoted(example)}}}{more}"))
     if not wide and not set(wanted) & set(QUANTITY_UNITS):
         hint = 'name it as columns={"transmission_error": "TE"}'
-        raise ValueError(one_line(f"{opened.file} has none of {listed(QUANTITY_UNITS)}; it has {listed(there)}; {hint}"))
-    return wanted
+        raise ValueError(one_line(f"{opened.file} has none of {listed(QUANTITY_UNITS)}; it has {there}; {hint}"))
+    return wanted | {name: name for name in wide}
+
+
+def _given_or_there(opened: OpenTable, columns: Mapping[str, str], known: Sequence[str], example: str) -> dict[str, str]:
+    """Return the column of the file for each known name that is given or is its name in the file."""
+    arguments.mapping("columns", columns, example)
+    if unknown := [name for name in columns if name not in known]:
+        raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of such a table; they are {listed(known)}")
+    there = _names(opened)
+    return {name: there[name] for name in known if name in there} | dict(columns)
 
 
 def _names(opened: OpenTable) -> dict[str, str]:
@@ -395,11 +399,8 @@ class ModeTable(ComparedByFields, Presented):
             ValueError: a column or a unit is missing, a number is not finite, or as the class
         """
         opened = open_table(path)
-        arguments.mapping("columns", columns or {}, '{"waves": "ND"}')
+        wanted = _given_or_there(opened, columns or {}, [*MODE_UNITS], '{"waves": "ND"}')
         there = _names(opened)
-        wanted = {name: there[name] for name in MODE_UNITS if name in there} | dict(columns or {})
-        if unknown := [name for name in wanted if name not in MODE_UNITS]:
-            raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of modes; they are {listed(MODE_UNITS)}")
         if ("mass" in wanted) == ("shape_squared" in wanted):
             raise ValueError(f"{opened.file} needs one of the columns mass and shape_squared; it has {listed(there)}")
         for name in ("frequency", "waves", "damping"):

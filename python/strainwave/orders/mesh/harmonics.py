@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
-from strainwave.messages import in_a_sentence
+from strainwave.messages import MAX_NAMES, in_a_sentence
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -30,6 +30,7 @@ FLOOR_QUANTILE = 0.25  # of the squares of all amplitudes: noise makes it as lon
 MAX_LEVEL_RATIO = 10.0  # of the floors of the lower and the higher orders; noise of 16 orders exceeds it in 2 % of tables
 RELATIVE_ROUNDING = 1e-10  # of the largest amplitude: a smaller one is rounding
 MAX_OTHER_ORDER = 0.1  # of the largest amplitude, of an order that is no multiple of `repeats`
+FALSE_REFUSAL = 1e-6  # probability that noise makes such an order
 UNEVEN_GAP = 1.5  # times the usual distance of angles, from which a gap is named
 NO_NOISE = "the noise of the solver is not determined"
 
@@ -65,7 +66,7 @@ class Harmonics(ComparedByFields):
         return np.asarray((squares > threshold).any(axis=0))
 
 
-def harmonics(angle: Array, torque: Array, values: Array, repeats: float, false_alarm: float) -> Harmonics:
+def harmonics(angle: Array, torque: Array, values: Array, repeats: float) -> Harmonics:
     """Return the harmonics of a quantity.
 
     Args:
@@ -73,10 +74,9 @@ def harmonics(angle: Array, torque: Array, values: Array, repeats: float, false_
         torque: [N.m], shape (n,)
         values: in any unit, shape (n,)
         repeats: number of times that it repeats in a turn
-        false_alarm: probability that noise makes an order
 
     Raises:
-        ValueError: the angles of a load determine no order, the torque is no few loads, or orders contradict `repeats`
+        ValueError: the angles of a load determine no order, or the torque is no few loads
     """
     period = tau / repeats
     rows_of_loads = _loads(torque)
@@ -91,24 +91,24 @@ def harmonics(angle: Array, torque: Array, values: Array, repeats: float, false_
     mean, waves = np.array([fit[0] for fit in fits]), np.array([fit[1] for fit in fits])
     noise, of_noise = _noise(waves)
     remarks = *_of_gap(angle[rows_of_loads[worst]], gaps[worst], orders), *of_noise
-    found = Harmonics(loads, orders, mean, waves, noise, remarks)
-    usual = float(np.median(np.diff(np.unique(angle))))
-    periods = min(int((float(np.ptp(angle)) + usual) / period * (1.0 + EVEN_STEP)), round(repeats))
-    if periods > 1:
-        rows = angle < angle.min() + periods * period * (1.0 - EVEN_STEP)
-        _check_repeats(harmonics(angle[rows], torque[rows], values[rows], repeats / periods, false_alarm), periods, false_alarm)
-    return found
+    return Harmonics(loads, orders, mean, waves, noise, remarks)
 
 
-def _check_repeats(found: Harmonics, periods: int, false_alarm: float) -> None:
-    """Raise ValueError if orders contradict the number of times that all repeats, by harmonics of that many periods."""
+def check_repeats(angle: Array, torque: Array, values: Array, repeats: int) -> None:
+    """Raise ValueError if a table of several periods has orders that contradict the number of times that all repeats."""
+    period = tau / repeats
+    span = float(np.ptp(angle)) + float(np.diff(np.unique(angle)).max(initial=0.0))
+    periods = min(int(span / period * (1.0 + EVEN_STEP)), repeats)
+    if periods < 2:
+        return
+    rows = angle < angle.min() + periods * period * (1.0 - EVEN_STEP)
+    found = harmonics(angle[rows], torque[rows], values[rows], repeats / periods)
     amplitude = np.abs(found.waves).max(axis=0)
-    others = found.significant(false_alarm) & (amplitude > MAX_OTHER_ORDER * amplitude.max())
+    others = found.significant(FALSE_REFUSAL) & (amplitude > MAX_OTHER_ORDER * amplitude.max())
     others[periods - 1 :: periods] = False
     if others.any():
-        names, sizes = (in_a_sentence([f"{each:.4g}" for each in of[others]]) for of in (found.orders, amplitude))
-        stated = f"repeats={periods * found.orders[0]:.0f}"
-        raise ValueError(f"order {names} has an amplitude of {sizes} and is no multiple of {stated}; give repeats=1")
+        names, sizes = (in_a_sentence([f"{each:.4g}" for each in of[others][:MAX_NAMES]]) for of in (found.orders, amplitude))
+        raise ValueError(f"order {names} has an amplitude of {sizes} and is no multiple of repeats={repeats}; give repeats=1")
 
 
 def complete_loads(angle: Array, torque: Array, repeats: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:

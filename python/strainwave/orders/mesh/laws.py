@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Gear, arguments, kinematic_error, stiffness, typeset, variation
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
-from strainwave.files.mesh_table import MeshTable, ModeTable
+from strainwave.files.mesh_table import QUANTITY_UNITS, MeshTable, ModeTable
 from strainwave.messages import listed, shortened
 from strainwave.orders.mesh.application import applied
 from strainwave.orders.mesh.error import (
@@ -24,7 +24,7 @@ from strainwave.orders.mesh.error import (
     transmission_error,
     twists_of,
 )
-from strainwave.orders.mesh.harmonics import MAX_LOAD_SPREAD, Harmonics, complete_loads, harmonics
+from strainwave.orders.mesh.harmonics import MAX_LOAD_SPREAD, Harmonics, check_repeats, complete_loads, harmonics
 from strainwave.presentation import Pictured, Row, counted
 
 if TYPE_CHECKING:
@@ -176,8 +176,10 @@ def mesh_laws(table: MeshTable, *, load: float | None = None, repeats: int = 1, 
     repeats = arguments.whole("repeats", repeats, 1, MAX_REPEATS)
     allowed = arguments.probability("false_alarm", false_alarm)
     table, incomplete = _complete(table, repeats)
+    quantity = next(getattr(table, name) for name in QUANTITY_UNITS if name in table.quantities)
+    check_repeats(table.angle, table.torque, quantity, repeats)
     error, of_spring, of_mesh = (
-        None if (values := getattr(table, name)) is None else harmonics(table.angle, table.torque, values, repeats, allowed)
+        None if (values := getattr(table, name)) is None else harmonics(table.angle, table.torque, values, repeats)
         for name in ("transmission_error", "stiffness", "mesh_stiffness")
     )
     first = next(each for each in (error, of_spring, of_mesh) if each is not None)

@@ -13,7 +13,7 @@ odd if the spring is: loads of both signs separate them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -33,8 +33,9 @@ MAX_BEND = 0.002  # of the largest twist: a spring whose twist is off by less in
 MAX_KNEE_LEVELS = 30  # loads that knees are looked for at
 MIN_LOADS = 3  # that determine a change with the load, and test its form
 RELATIVE_NOISE = 1e-3  # of the largest amplitude: a solver is not believed to be more exact (assumed)
-MAX_FALL = 100.0  # of the error over what is left at the largest load
+MIN_FALL, MAX_FALL = 1e-4, 100.0  # of the error at the largest load over what is left there, between which it is looked for
 SEARCH_POINTS = 60
+MAX_STEPS = 30  # of Gauss and Newton, from the best of these points
 NAMED_MISFIT = 5.0  # times the noise, from which what a model leaves is stated
 
 
@@ -254,22 +255,16 @@ def _model(torque: Array, varying: Array | None, waves: Complex, *, falls: bool)
 
     if not falls:
         return model(0.0)
-    nearly = model(_least(lambda each: model(each).squares, float(np.abs(torque).max())))
-    _, own = nearly.slope(torque)  # a step of Newton's method, as the search is exact to the root of rounding alone
-    step = float(np.sum((own.conj() * nearly.left).real) / np.sum(np.abs(own) ** 2))
-    return min(nearly, model(max(nearly.sensitivity + step, 0.0)), key=lambda each: each.squares)
-
-
-def _least(squares: Callable[[float], float], largest: float) -> float:
-    """Return the sensitivity of least squares [1/(N.m)]."""
-    from scipy.optimize import minimize_scalar
-
-    tried = np.geomspace(1e-4, MAX_FALL, SEARCH_POINTS) / largest
-    values = [squares(each) for each in tried.tolist()]
-    place = int(np.argmin(values))
-    ends = float(np.log(tried[max(place - 1, 0)])), float(np.log(tried[min(place + 1, len(tried) - 1)]))
-    best = minimize_scalar(lambda each: squares(float(np.exp(each))), bounds=ends, method="bounded", options={"xatol": 1e-10})
-    return float(np.exp(best.x))
+    starts = np.geomspace(MIN_FALL, MAX_FALL, SEARCH_POINTS) / float(np.abs(torque).max())
+    best = min(map(model, starts.tolist()), key=lambda each: each.squares)
+    for _ in range(MAX_STEPS):
+        _, own = best.slope(torque)
+        step = float(np.sum((own.conj() * best.left).real) / np.sum(np.abs(own) ** 2))
+        better = model(max(best.sensitivity + step, 0.0))
+        if not better.squares < best.squares:
+            break
+        best = better
+    return best
 
 
 def _few_loads(torque: Array, waves: Complex) -> str:
