@@ -36,6 +36,7 @@ RELATIVE_NOISE = 1e-3  # of the largest amplitude: a solver is not believed to b
 MIN_FALL, MAX_FALL = 1e-4, 100.0  # of the error at the largest load over what is left there, between which it is looked for
 SEARCH_POINTS = 60
 MAX_STEPS = 30  # of Gauss and Newton, from the best of these points
+MAX_LEFT_BY_FALL = 0.5  # of the squares without it, by a fall in the model: orders that fall each by its own rate have none
 NAMED_MISFIT = 5.0  # times the noise, from which what a model leaves is stated
 
 
@@ -214,6 +215,9 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     if len(torque) >= MIN_LOADS:
         models += [_model(torque, each, waves, falls=falls) for falls, each in _choices(torque, varying)]
     chosen = min(models, key=lambda each: each.criterion(believed))
+    without_fall = min((each for each in models if not each.falls), key=lambda each: each.criterion(believed))
+    if chosen.squares > MAX_LEFT_BY_FALL * without_fall.squares:
+        chosen = without_fall
     remarks: tuple[str, ...] = ()
     if len(torque) < MIN_LOADS:
         remarks = (_few_loads(torque, waves),)

@@ -124,6 +124,22 @@ def test_standard_deviations_contain_what_the_law_leaves(loads: list[float]) -> 
     assert thirtieth.sigma < 0.6 * thirtieth.amplitude
 
 
+def test_orders_that_fall_each_by_its_own_rate_have_no_fall_in_common() -> None:
+    def error(at: Array, torque: Array) -> Array:  # as an independent ring has them: the order of the teeth changes its sign
+        level = np.abs(torque) / 40.0
+        noise = np.random.default_rng(0).normal(0.0, 1e-9, len(at))
+        return np.asarray(
+            3.4e-5 * (1.0 - 0.05 * level) * np.sin(2.0 * at) + 2e-5 * np.cos(3.0 * level) * np.sin(30.0 * at) + noise
+        )
+
+    found = sw.orders.mesh_laws(table_of(error, [-40.0, -20.0, -10.0, 0.0, 10.0, 20.0, 40.0], count=144))
+    assert isinstance(found.kinematic_error, sw.kinematic_error.Fourier)
+    second, thirtieth = found.orders[0], found.orders[1]
+    assert abs(second.amplitude - 3.4e-5) < 2.0 * second.sigma < 4e-6
+    assert abs(thirtieth.amplitude - 2e-5) < 2.0 * thirtieth.sigma
+    assert any("it misses that of order 30 by a quarter" in remark for remark in found.remarks)
+
+
 def test_a_stiffness_varies_no_more_than_what_the_law_leaves_shows() -> None:
     def error(at: Array, torque: Array) -> Array:
         fallen = (2.5e-4 * np.sin(2.0 * at + 0.5) + 4e-5 * np.sin(4.0 * at)) / (1.0 + 0.01 * np.abs(torque))
