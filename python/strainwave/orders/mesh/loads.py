@@ -31,10 +31,11 @@ Complex = NDArray[np.complex128]
 
 MAX_BEND = 0.002  # of the largest twist: a spring whose twist is off by less in the root mean square is straight enough
 MAX_KNEE_LEVELS = 30  # loads that knees are looked for at
-MIN_LOADS = 3  # that determine a change with the load, and test its form
+MIN_LOADS = 3  # that determine a change with the load
 RELATIVE_NOISE = 1e-3  # of the largest amplitude: a solver is not believed to be more exact (assumed)
 MIN_FALL, MAX_FALL = 1e-4, 100.0  # of the error at the largest load over what is left there, between which it is looked for
 SEARCH_POINTS = 60
+NOISE_QUANTILE = 0.25  # of what a model leaves of the orders: most of them may have a misfit
 MAX_STEPS = 30  # of Gauss and Newton, from the best of these points
 MAX_LEFT_BY_FALL = 0.5  # of the squares without it, by a fall in the model: orders that fall each by its own rate have none
 NAMED_MISFIT = 5.0  # times the noise, from which what a model leaves is stated
@@ -182,7 +183,10 @@ class _Model:
     def scatter(self, noise: float) -> Array:
         """Return the standard deviation of a wave, by noise or by what the model leaves of its order [rad], shape (h,)."""
         per_freedom = self.data / max(self.data - self.unknowns, 1)  # one load leaves nothing
-        return np.asarray(np.maximum(noise, np.sqrt(per_freedom * np.mean(np.abs(self.left) ** 2, axis=0))))
+        of_order = np.sqrt(per_freedom * np.mean(np.abs(self.left) ** 2, axis=0))
+        # A fall in common takes the noise out of one order; it is in all, so a lower one of them shows it.
+        level = float(np.quantile(of_order[self.coefficients[0] != 0.0], NOISE_QUANTILE, method="lower"))
+        return np.asarray(np.maximum(max(noise, level), of_order))
 
     def sigmas(self, torque: Array, noise: float) -> tuple[float, Array]:
         """Return the standard deviations of the sensitivity [1/(N.m)] and of the coefficients, shape (p, h)."""
@@ -226,6 +230,8 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     elif (left := float(np.sqrt(2.0 * chosen.squares / chosen.data))) > NAMED_MISFIT * believed:
         no_law = f"{quantity(left, 'rad')} of it (rms) is no fall and no variation as the laws have it"
         remarks = (f"{_change(torque, waves)}; {no_law}",)
+    elif chosen.falls and len(np.unique(np.abs(torque))) == 2:
+        remarks = (f"between 0 and {np.abs(torque).max():g} N.m the form of the fall is not tested; add loads between",)
     of_fall, of_orders = chosen.sigmas(torque, noise)
     misfit = np.sqrt(np.mean(np.abs(chosen.left) ** 2, axis=0))
     sigma = np.hypot(of_orders[0], np.sqrt(np.maximum(misfit**2 - noise**2, 0.0)))  # no number of loads averages a misfit out

@@ -124,6 +124,23 @@ def test_standard_deviations_contain_what_the_law_leaves(loads: list[float]) -> 
     assert thirtieth.sigma < 0.6 * thirtieth.amplitude
 
 
+def test_deviations_of_a_small_table_are_those_of_its_noise() -> None:
+    law = sw.kinematic_error.Fourier(order=[2, 4, 6], amplitude=[3e-4, 5e-5, 2e-5], phase=[2.0, 4.0, 6.0])
+    sigmas = []
+    for seed in range(12):
+        generator = np.random.default_rng(seed)
+
+        def error(at: Array, torque: Array, generator: np.random.Generator = generator) -> Array:
+            fallen = np.asarray(law.error(at)) / (1.0 + 0.01 * np.abs(torque)) ** 2
+            return np.asarray(fallen + generator.normal(0.0, 9e-7, len(at)))
+
+        found = sw.orders.mesh_laws(table_of(error, [-30.0, 0.0, 30.0], count=12, period=np.pi), repeats=2)
+        assert abs(found.orders[0].amplitude - 3e-4) < 4.0 * found.orders[0].sigma
+        assert any(remark.startswith("between 0 and 30 N.m the form of the fall is not tested") for remark in found.remarks)
+        sigmas.append(found.orders[0].sigma)
+    assert min(sigmas) > 1e-7  # of noise 3.7e-7 at a load
+
+
 def test_orders_that_fall_each_by_its_own_rate_have_no_fall_in_common() -> None:
     def error(at: Array, torque: Array) -> Array:  # as an independent ring has them: the order of the teeth changes its sign
         level = np.abs(torque) / 40.0
