@@ -67,7 +67,7 @@ def plan(
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
     torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
 ) -> None:
-    r"""Rank candidate measurements by what they reach per minute.
+    """Rank candidate measurements by what they reach per minute.
 
     Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
     deviation of each wanted number before and after, and what would remain unknown, and why. With --loop candidates are loops
@@ -75,8 +75,6 @@ def plan(
 
     Examples:
         strainwave plan csg-25-100 --want gear.friction_input
-        strainwave plan gear.toml --want gear.friction_input \
-          --speed-limit "3000 rpm"
         strainwave plan gear.toml --want loss --loop 20Nm.csv --loop 40Nm.csv
     """
     from typing import Any
