@@ -326,7 +326,8 @@ def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
     spring = gear.stiffness
     if isinstance(spring, stiffness.ThreeSegment) and spring.t2 < reach:
         first = abs(spring.k2 - spring.k1) > abs(spring.k3 - spring.k2)  # the larger bend stays
-        t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
+        beyond = (reach - spring.t1) / ((spring.t2 - spring.t1) / spring.k2 + (reach - spring.t2) / spring.k3)
+        t1, k2 = (spring.t1, beyond) if first else (spring.t2, spring.k3)
         two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED_TORQUE)
         yield drive.replace(gear=gear.replace(stiffness=two))
     if not isinstance(spring, stiffness.Linear):
