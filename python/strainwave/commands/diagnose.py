@@ -166,7 +166,9 @@ def wear(
             help="Value at which the gear is worn out: of play, amplitude, friction or stiffness; repeat as needed.",
         ),
     ],
-    work: Annotated[str | None, typer.Option(help="Work [J] before each test, as 0,1e6,2e6; gear files lack it.")] = None,
+    work: Annotated[
+        list[str] | None, typer.Option(help="Work [J] before each test, as 0,1e6,2e6; gear files lack it. Repeat as needed.")
+    ] = None,
     work_per_hour: Annotated[
         str | None, typer.Option(help="Work of the duty in an hour [J]: the life in hours; a table may have time for work.")
     ] = None,
@@ -189,8 +191,8 @@ def wear(
 
     limits = limits_in(limit)
     per_hour = None if work_per_hour is None else positive_number("--work-per-hour", work_per_hour, "J")
-    read = read_wear_tests(tests, list(limits), work, per_hour)
-    life = wear_life(read.work, read.values, limits)
+    read = read_wear_tests(tests, list(limits), ",".join(work) if work else None, per_hour)
+    life = wear_life(read.work, read.values, limits, resolution=read.resolution)
     write_report(out, wear_files(read, life, per_hour, Provenance.of_this_command(tests)), wear_summary(read, life, per_hour))
 
 

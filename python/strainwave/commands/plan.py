@@ -11,6 +11,7 @@ from strainwave.commands.options import numeric
 from strainwave.number_texts import is_number, number_in
 
 if TYPE_CHECKING:
+    from strainwave._core import Gear
     from strainwave.files.recording import Recording
 
 
@@ -59,12 +60,14 @@ def plan(
         ),
     ] = None,
     minutes: Annotated[float, numeric("What all measurements may take together.")] = 30.0,
-    criterion: Annotated[str, typer.Option(help="A: sum of relative variances; D: determinant of the covariance.")] = "A",
+    criterion: Annotated[
+        str | None, typer.Option(help="A: sum of relative variances, if not given; D: determinant of the covariance.")
+    ] = None,
     speed_limit: Annotated[str | None, typer.Option(help='Of the input, as "2000 rpm"; the rating, if not given.')] = None,
     lowest_speed: Annotated[str | None, typer.Option(help='That can be held steady, as "5 rpm".')] = None,
     torque_limit: Annotated[str | None, typer.Option(help='At the output, as "50 N.m"; the rating, if not given.')] = None,
 ) -> None:
-    r"""Rank candidate measurements by what they reach per minute.
+    """Rank candidate measurements by what they reach per minute.
 
     Candidates are the speeds of a friction table and torsion loops within the limits of the gear. The output has the standard
     deviation of each wanted number before and after, and what would remain unknown, and why. With --loop candidates are loops
@@ -72,8 +75,6 @@ def plan(
 
     Examples:
         strainwave plan csg-25-100 --want gear.friction_input
-        strainwave plan gear.toml --want gear.friction_input \
-          --speed-limit "3000 rpm"
         strainwave plan gear.toml --want loss --loop 20Nm.csv --loop 40Nm.csv
     """
     from typing import Any
@@ -85,14 +86,17 @@ def plan(
     from strainwave.identification.excitation.plan import plan_experiments as planned
 
     if loop:
-        seconds = 60.0 * number("--minutes", minutes, low=0.0)
-        print(plan_loops(_loops(loop, experiment, unknown), GearSet.read(start).gear, want, time=seconds))
+        others = {"unknown": unknown, "noise": noise, "resolution": resolution, "criterion": criterion,
+                  "speed-limit": speed_limit, "lowest-speed": lowest_speed, "torque-limit": torque_limit}  # fmt: skip
+        _check_alone(experiment, [name for name, value in others.items() if value])
+        gear, seconds = GearSet.read(start).gear, 60.0 * number("--minutes", minutes, low=0.0)
+        print(plan_loops([_loop(each, gear) for each in loop], gear, want, time=seconds))
         return
 
     def in_si(option: str, given: str | None, unit: str) -> float | None:
         return None if given is None else quantity_of(option, given, unit, "command line").to(unit).value
 
-    chosen: Any = one_of("--criterion", criterion, ("A", "D"))
+    chosen: Any = one_of("--criterion", criterion or "A", ("A", "D"))
     kinds = [one_of("--experiment", each, ("friction", "torsion")) for each in experiment or ("friction", "torsion")]
     found = planned(
         GearSet.read(start),
@@ -110,13 +114,25 @@ def plan(
     print(found)
 
 
-def _loops(files: list[Path], experiment: list[str] | None, unknown: list[str] | None) -> list[Recording]:
-    """Return measured loops."""
-    from strainwave.files.recording import Recording
+def _check_alone(experiment: list[str] | None, options: list[str]) -> None:
+    """Raise ValueError for options that a plan of loops does not use."""
+    if any(each != "torsion" for each in experiment or ()):
+        raise ValueError("--loop plans torsion loops; leave out other experiments")
+    if options:
+        raise ValueError(f"--loop plans by the loops that were measured, up to their torque; leave out --{options[0]}")
 
-    if unknown or any(each != "torsion" for each in experiment or ()):
-        raise ValueError("--loop plans torsion loops for all sources of loss; leave out --unknown and other experiments")
-    return [Recording.read(each) for each in files]
+
+def _loop(file: Path, gear: Gear) -> Recording:
+    """Return a measured loop."""
+    from strainwave.files.recording import Recording
+    from strainwave.identification.experiments.loss_loop import LossLoop
+
+    recording = Recording.read(file)
+    try:
+        LossLoop.of(recording, gear)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+    return recording
 
 
 def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:

@@ -183,12 +183,13 @@ class LineCrossing(NamedTuple):
     high: float
 
 
-def line_crossing(x: Array, y: Array, threshold: float, confidence: float) -> LineCrossing:
+def line_crossing(x: Array, y: Array, threshold: float, confidence: float, min_sigma: float = 0.0) -> LineCrossing:
     """Return where the line through points of equal, unknown noise passes a threshold, in the interval of Fieller1954.
 
     Args:
         x, y: of the points, shape (n,), n at least 3
         confidence: probability that the interval contains the crossing
+        min_sigma: standard deviation of y that points on a line have, too
 
     >>> line_crossing(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), 5.0, 0.95).distance
     3.0
@@ -197,7 +198,7 @@ def line_crossing(x: Array, y: Array, threshold: float, confidence: float) -> Li
     slope = float(((x - middle) @ y) / spread)
     level = float(y.mean())
     freedom = len(x) - 2
-    variance = float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom
+    variance = max(float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom, min_sigma**2)
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
     low, high = _fieller(slope, threshold - level, student(confidence, freedom) ** 2 * variance, len(x), spread)

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from decimal import Decimal
+from math import inf, isfinite, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,6 +23,7 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented, Row
 from strainwave.simulation.usage import work_in
+from strainwave.typeset import quantity
 
 Array = NDArray[np.float64]
 
@@ -146,23 +148,42 @@ class WearLife(Presented):
         return min(lives)
 
 
-def wear_life(work: ArrayLike, tests: Mapping[str, Sequence[float]], limits: Mapping[str, float]) -> WearLife:
+def resolution_of(values: Sequence[float]) -> float:
+    """Return the largest power of ten of which all values are whole multiples: no digit beyond it was written.
+
+    >>> resolution_of([0.337, 0.45, 0.5]), resolution_of([20100.0, 19800.0])
+    (0.001, 100.0)
+    """
+    exponents = [int(Decimal(repr(float(value))).normalize().as_tuple().exponent) for value in values if value != 0.0]
+    return float(Decimal(10) ** min(exponents, default=0))
+
+
+def wear_life(
+    work: ArrayLike,
+    tests: Mapping[str, Sequence[float]],
+    limits: Mapping[str, float],
+    *,
+    resolution: Mapping[str, float] | None = None,
+) -> WearLife:
     """Return wear rates and remaining life of one gear by repeated tests.
 
     Each quantity is a straight line over the work (Archard1953), with normal noise that is independent from test to test: what
     a test repeats. Intervals are those of Student and of Fieller's theorem (Fieller1954). With m quantities each has the
     confidence 1 - 0.05 / m, so that the interval of the first to reach its limit has 0.95 or more. Leaves out running-in, whose
     tests are to be left out, and wear that accelerates. The work is taken as exact; divide a life by the work per hour
-    of the duty, as `transmitted_work` finds it, for hours.
+    of the duty, as `transmitted_work` finds it, for hours. The noise is at least that of rounding, resolution / sqrt(12):
+    tests with few digits may lie on a line by chance.
 
     Args:
         work: that the gear had transmitted before each test [J], shape (n,), n at least 3
         tests: values of each test, shape (n,), by the name of the quantity: play [rad], amplitude of the kinematic error [rad],
             friction [N.m], stiffness [N.m/rad]
         limits: value of each at which the gear is worn out
+        resolution: smallest difference of the values of each; if not given, that of their last decimal
 
     Raises:
-        ValueError: a name is none of these, numbers of tests differ or are too few, or all are of the same work
+        ValueError: a name is none of these, numbers of tests differ or are too few, all are of the same work, or the first
+            test is past a limit
 
     >>> life = wear_life([0.0, 1e6, 2e6, 3e6], {"play": [1.0e-4, 1.31e-4, 1.58e-4, 1.92e-4]}, {"play": 4e-4})
     >>> round(life.remaining / 1e6, 1), life.low < life.remaining < life.high, round(life.fault.play, 7)
@@ -173,7 +194,10 @@ def wear_life(work: ArrayLike, tests: Mapping[str, Sequence[float]], limits: Map
     done = arguments.numbers("work", work)
     _check(done, tests, limits)
     confidence = 1.0 - (1.0 - CONFIDENCE_LEVEL) / len(tests)
-    trends = tuple(_trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence) for name in tests)
+    steps = {name: resolution_of(values) for name, values in tests.items()} | dict(resolution or {})
+    trends = tuple(
+        _trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence, steps[name]) for name in tests
+    )
     first = min(trends, key=lambda trend: trend.remaining)
     remarks = tuple(
         f"the rate of the {trend.name}, {trend.rate:.2g} ± {trend.rate_sigma:.1g} {QUANTITY_UNITS[trend.name]}/J, does not "
@@ -199,18 +223,25 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         if name not in limits:
             raise ValueError(f"limits lacks {quoted(name)}; give the value at which the gear is worn out")
         if len(values) != len(work):
-            raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for trend")
+            raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for each")
     if len(work) < MIN_TESTS:
         raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests; there are {len(work)}: test again")
     if float(np.ptp(work)) == 0.0:
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
 
 
-def _trend(name: str, work: Array, values: Array, limit: float, confidence: float) -> WearTrend:
+def _trend(name: str, work: Array, values: Array, limit: float, confidence: float, resolution: float) -> WearTrend:
     """Return the trend of one quantity; one that falls towards its limit is turned over."""
-    limit = arguments.number(f"limits[{quoted(name)}]", limit, QUANTITY_UNITS[name])
+    unit = QUANTITY_UNITS[name]
+    limit = arguments.number(f"limits[{quoted(name)}]", limit, unit)
     sense = -1.0 if name == "stiffness" else 1.0
-    line = line_crossing(work, sense * values, sense * limit, confidence)
+    first = float(values[np.argmin(work)])
+    if sense * first >= sense * limit:
+        raise ValueError(
+            f"the first test is past the limit of the {name}: {quantity(first, unit)}, limit {quantity(limit, unit)}, and wear "
+            f"{'lowers' if sense < 0.0 else 'raises'} it; correct the limit"
+        )
+    line = line_crossing(work, sense * values, sense * limit, confidence, resolution / sqrt(12.0))
     determined = isfinite(line.high)
     return WearTrend(
         name,

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from strainwave import arguments
-from strainwave.diagnose.wear import QUANTITY_UNITS
+from strainwave.diagnose.wear import QUANTITY_UNITS, resolution_of
+from strainwave.files import units
 from strainwave.files.entries import numbers_of
 from strainwave.files.gear_set import GearSet
 from strainwave.files.recording import Recording
@@ -32,11 +33,13 @@ class WearTests:
         work: that the gear had transmitted before each test [J], shape (n,)
         values: of each test, by the name of the quantity, shape (n,)
         names: number of the gear that stands for each quantity, or its column
+        resolution: of the values of each quantity, by the last digit that was written
     """
 
     work: tuple[float, ...]
     values: dict[str, tuple[float, ...]]
     names: dict[str, str]
+    resolution: dict[str, float]
 
 
 def read_wear_tests(
@@ -52,17 +55,20 @@ def read_wear_tests(
         work_per_hour: of the duty [J]
 
     Raises:
-        ValueError: a quantity is not known, not in the table, or not identified in a gear file; or the work is missing
+        ValueError: a quantity is not known, not in the table, or not identified in a gear file; the work is missing or given
+            twice; or there are several tables
     """
     if unknown := [name for name in quantities if name not in QUANTITY_UNITS]:
         raise ValueError(f"--limit {unknown[0]}: wear has the quantities {listed(QUANTITY_UNITS)}")
-    is_table = len(files) == 1 and not files[0].is_dir() and files[0].suffix.lower() != ".toml"
-    if is_table:
-        values, done = _of_table(files[0], quantities, work is None, work_per_hour)
+    tables = [file for file in files if not file.is_dir() and file.suffix.lower() != ".toml"]
+    if tables and len(files) > 1:
+        raise ValueError(f"{tables[0]} is a table, and one of {len(files)} files; give one table, or a gear file of each test")
+    if tables:
+        values, done, resolution = _of_table(files[0], quantities, work is None, work_per_hour)
         names = {name: f"column {name}" for name in quantities}
     else:
         values, names = _of_gears(files, quantities)
-        done = ()
+        done, resolution = (), {name: resolution_of(values[name]) for name in quantities}
     if work is not None:
         done = tuple(number_in(each.strip()) for each in work.split(","))
     if not done:
@@ -70,14 +76,14 @@ def read_wear_tests(
     count = len(next(iter(values.values())))
     if len(done) != count:
         raise ValueError(f"--work has {len(done)} numbers for {count} tests; give one for each, as 0,1e6,2e6")
-    return WearTests(done, values, names)
+    return WearTests(done, values, names, resolution)
 
 
 def limits_in(texts: Sequence[str]) -> dict[str, float]:
     """Return the value at which each quantity is worn out, in SI units.
 
     Raises:
-        ValueError: a name is none of the quantities, or a value no number of its unit
+        ValueError: a name is none of the quantities or given twice, or a value no number of its unit
 
     >>> limits_in(["play=0.3 mrad", "stiffness=15e3"])
     {'play': 0.0003, 'stiffness': 15000.0}
@@ -87,6 +93,8 @@ def limits_in(texts: Sequence[str]) -> dict[str, float]:
         name, _, value = text.partition("=")
         if name not in QUANTITY_UNITS or not value:
             raise ValueError(f"--limit {text}: write NAME=VALUE, as play=4e-4; names are {listed(QUANTITY_UNITS)}")
+        if name in limits:
+            raise ValueError(f"--limit {name} is given twice; give one")
         limits[name] = positive_number(f"--limit {name}", value, QUANTITY_UNITS[name])
     return limits
 
@@ -97,22 +105,30 @@ def positive_number(name: str, text: str, unit: str) -> float:
 
 
 def _of_table(
-    file: Path, quantities: Sequence[str], has_work: bool, work_per_hour: float | None
-) -> tuple[dict[str, tuple[float, ...]], tuple[float, ...]]:
-    """Return the values of each quantity, and the work before each test; empty if the table has none."""
+    file: Path, quantities: Sequence[str], reads_work: bool, work_per_hour: float | None
+) -> tuple[dict[str, tuple[float, ...]], tuple[float, ...], dict[str, float]]:
+    """Return the values of each quantity, the work before each test, and the resolution of the values.
+
+    The work is empty if it is not read.
+    """
     columns = Recording.header(file)
     by = next((name for name in ("work", "time") if name in columns), "")
     if missing := [name for name in quantities if name not in columns]:
         raise ValueError(f"{file.name} has no column {quoted(missing[0])}; it has {listed(map(quoted, columns))}")
-    wanted = [*quantities, *([by] if has_work and by else [])]
+    if by == "work" and not reads_work:
+        raise ValueError(f"{file.name} has a column work, and --work is given, too; leave one out")
+    wanted = [*quantities, *([by] if reads_work and by else [])]
     table = Recording.read(file, {name: name for name in wanted})
     values = {name: tuple(table.values(name, QUANTITY_UNITS[name]).tolist()) for name in quantities}
-    if not has_work:
-        return values, ()
+    resolution = {
+        name: units.convert(resolution_of(table[name].tolist()), table.unit(name), QUANTITY_UNITS[name]) for name in quantities
+    }
+    if not reads_work:
+        return values, (), resolution
     if by == "work":
-        return values, tuple(table.values("work", "J").tolist())
+        return values, tuple(table.values("work", "J").tolist()), resolution
     if by == "time" and work_per_hour is not None:
-        return values, tuple((work_per_hour * table.values("time", "h")).tolist())
+        return values, tuple((work_per_hour * table.values("time", "h")).tolist()), resolution
     option = "--work-per-hour of the duty" if by else "--work before each test, as 0,1e6,2e6"
     raise ValueError(f"{file.name} has no column work [J]; give {option}")
 

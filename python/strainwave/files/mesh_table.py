@@ -10,7 +10,7 @@ each of its columns.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import tau
 from pathlib import Path
@@ -36,6 +36,7 @@ QUANTITY_UNITS = {"transmission_error": "rad", "stiffness": "N.m/rad", "mesh_sti
 PLACE_UNITS = {"angle": "rad", "torque": "N.m"}
 MODE_UNITS = {"frequency": "Hz", "waves": "1", "damping": "1", "mass": "kg", "shape_squared": "1/kg"}
 MAX_MODES = 4  # of a ring
+MAX_PAIR_GAP = 1e-3  # relative difference of the frequencies of the two shapes of a mode that travels, by the mesh of elements
 MAX_LOADS = 1000  # columns of one quantity
 _OF_LOAD = re.compile(
     rf"({'|'.join(QUANTITY_UNITS)})[\s_@=(]*([-+\u2212]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)[\s_]*([^\d\s()][^()]*?)\)?"
@@ -217,24 +218,28 @@ def _loads_of_matrix(opened: ArrayTable, label: Label, torque: Array, units: Map
 
 def _wanted(opened: OpenTable, columns: Mapping[str, str], wide: Mapping[str, _Load]) -> dict[str, str]:
     """Return the column of the file for each name."""
-    arguments.mapping("columns", columns, '{"transmission_error": "TE"}')
-    there = _names(opened)
-    known = [*PLACE_UNITS, *QUANTITY_UNITS]
-    wanted = {name: there[name] for name in known if name in there} | {name: name for name in wide} | dict(columns)
-    if unknown := [name for name in columns if name not in known]:
-        raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of such a table; they are {listed(known)}")
-    both = next((name for name in wanted if name not in ("angle", *wide)), "") if wide else ""
-    if both:
-        raise ValueError(f"{opened.file} has columns of single loads and a column {both}; leave one of the two out")
+    wanted = _given_or_there(opened, columns, [*PLACE_UNITS, *QUANTITY_UNITS], '{"transmission_error": "TE"}')
+    there = listed(_names(opened))
+    if both := [name for name in wanted if wide and name != "angle"]:
+        raise ValueError(f"{opened.file} has columns of single loads and a column {both[0]}; leave one of the two out")
     for name, example in (("angle", "phi"), *(() if wide else (("torque", "load"),))):
         if name not in wanted:
-            missing = f"{opened.file} has no column {name}; it has {listed(there)}; name it as columns={{{quoted(name)}: "
+            missing = f"{opened.file} has no column {name}; it has {there}; name it as columns={{{quoted(name)}: "
             more = ", or add it: 0 N.m of a table without load" if name == "torque" else ""
             raise ValueError(one_line(f"{missing}{quoted(example)}}}{more}"))
     if not wide and not set(wanted) & set(QUANTITY_UNITS):
         hint = 'name it as columns={"transmission_error": "TE"}'
-        raise ValueError(one_line(f"{opened.file} has none of {listed(QUANTITY_UNITS)}; it has {listed(there)}; {hint}"))
-    return wanted
+        raise ValueError(one_line(f"{opened.file} has none of {listed(QUANTITY_UNITS)}; it has {there}; {hint}"))
+    return wanted | {name: name for name in wide}
+
+
+def _given_or_there(opened: OpenTable, columns: Mapping[str, str], known: Sequence[str], example: str) -> dict[str, str]:
+    """Return the column of the file for each known name that is given or is its name in the file."""
+    arguments.mapping("columns", columns, example)
+    if unknown := [name for name in columns if name not in known]:
+        raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of such a table; they are {listed(known)}")
+    there = _names(opened)
+    return {name: there[name] for name in known if name in there} | dict(columns)
 
 
 def _names(opened: OpenTable) -> dict[str, str]:
@@ -296,7 +301,7 @@ class ModeTable(ComparedByFields, Presented):
         waves: of the shape around the ring (nodal diameters), whole; 0 of a mode that does not travel, shape (n,)
         damping: damping ratio, as a share of the critical one [1], shape (n,)
         mass: modal mass at the mesh: one over the square of the mass-normalised shape's displacement along the line of action,
-            mean over the engaged teeth [kg], shape (n,)
+            mean over the engaged teeth [kg], shape (n,); of a mode that travels the squares of both shapes of its pair added
         source: where it comes from, one line of text, as the name of the file
 
     Raises:
@@ -334,30 +339,49 @@ class ModeTable(ComparedByFields, Presented):
         return np.asarray(1.0 / (self.mass * (tau * self.frequency) ** 2))
 
     @property
+    def joined(self) -> ModeTable:
+        """The table with one row for a mode that travels, whose pair of shapes of equal frequency and waves may be two rows."""
+        order = np.lexsort((self.frequency, self.waves))
+        second = np.diff(self.waves[order], prepend=-1.0) == 0.0
+        second &= np.diff(self.frequency[order], prepend=0.0) < MAX_PAIR_GAP * self.frequency[order]
+        second &= self.waves[order] > 0.0
+        for place in range(1, len(second)):
+            second[place] &= not second[place - 1]
+        mass = self.mass.copy()
+        first = np.flatnonzero(second) - 1
+        mass[order[first]] = 1.0 / (1.0 / mass[order[first]] + 1.0 / mass[order[first + 1]])
+        kept = np.sort(order[~second])
+        return ModeTable(self.frequency[kept], self.waves[kept], self.damping[kept], mass[kept], self.source)
+
+    @property
     def ring(self) -> Any:
         """The ring of these modes for a `structure.Staged`, `sw.ring.Modes`; of many, those of the largest compliance."""
         from strainwave import ring
 
-        kept = self._kept
+        modes = self.joined
+        kept = modes._most_compliant
         return ring.Modes(
-            natural_frequency=(tau * self.frequency[kept]).tolist(),
-            waves=self.waves[kept].tolist(),
-            damping=self.damping[kept].tolist(),
-            mass=self.mass[kept].tolist(),
+            natural_frequency=(tau * modes.frequency[kept]).tolist(),
+            waves=modes.waves[kept].tolist(),
+            damping=modes.damping[kept].tolist(),
+            mass=modes.mass[kept].tolist(),
         )
 
     @property
-    def left_out(self) -> list[str]:
-        """In words, the modes that `ring` leaves out; empty if it has all."""
-        if len(self._kept) == len(self.frequency):
-            return []
-        rest = np.delete(np.arange(len(self.frequency)), self._kept)
-        share = typeset.percent(float(self.compliance[rest].sum() / self.compliance.sum()))
-        names = listed(f"{each:.4g} Hz" for each in np.sort(self.frequency[rest]))
-        return [f"a ring has {MAX_MODES} modes; left out: {names}, with {share} of the compliance of all"]
+    def remarks(self) -> list[str]:
+        """In words, which rows `ring` joins, and which modes it leaves out."""
+        modes, remarks = self.joined, []
+        if pairs := len(self.frequency) - len(modes.frequency):
+            remarks.append(f"{counted(pairs, 'pair')} of rows with equal waves and frequency joined to one mode each")
+        rest = np.delete(np.arange(len(modes.frequency)), modes._most_compliant)
+        if len(rest):
+            share = typeset.percent(float(modes.compliance[rest].sum() / modes.compliance.sum()))
+            names = listed(f"{each:.4g} Hz" for each in np.sort(modes.frequency[rest]))
+            remarks.append(f"a ring has {MAX_MODES} modes; left out: {names}, with {share} of the compliance of all")
+        return remarks
 
     @property
-    def _kept(self) -> NDArray[np.int_]:
+    def _most_compliant(self) -> NDArray[np.int_]:
         """Places of the modes of the largest compliance, in their order."""
         return np.sort(np.argsort(-self.compliance, kind="stable")[:MAX_MODES])
 
@@ -375,11 +399,8 @@ class ModeTable(ComparedByFields, Presented):
             ValueError: a column or a unit is missing, a number is not finite, or as the class
         """
         opened = open_table(path)
-        arguments.mapping("columns", columns or {}, '{"waves": "ND"}')
+        wanted = _given_or_there(opened, columns or {}, [*MODE_UNITS], '{"waves": "ND"}')
         there = _names(opened)
-        wanted = {name: there[name] for name in MODE_UNITS if name in there} | dict(columns or {})
-        if unknown := [name for name in wanted if name not in MODE_UNITS]:
-            raise ValueError(f"columns names {quoted(unknown[0])}, which is no column of modes; they are {listed(MODE_UNITS)}")
         if ("mass" in wanted) == ("shape_squared" in wanted):
             raise ValueError(f"{opened.file} needs one of the columns mass and shape_squared; it has {listed(there)}")
         for name in ("frequency", "waves", "damping"):

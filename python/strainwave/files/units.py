@@ -43,6 +43,8 @@ _DERIVED_UNITS: dict[str, tuple[Fraction | int, Powers]] = {
     "kgf": (Fraction("9.80665"), {"N": 1}),
     "gn": (Fraction("9.80665"), {"m": 1, "s": -2}),  # standard gravity, in which accelerometers count
     "J": (1, {"N": 1, "m": 1}),
+    "MJ": (10**6, {"J": 1}),  # no other unit has the prefix M
+    "Wh": (3600, {"J": 1}),
     "W": (1, {"J": 1, "s": -1}),
     "V": (1, {"W": 1, "A": -1}),
     "Ohm": (1, {"V": 1, "A": -1}),

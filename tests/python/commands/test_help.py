@@ -9,7 +9,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import strainwave as sw
 import typer
 from strainwave.commands.cli import HEADINGS, app
 from strainwave.commands.docs import documentation
@@ -87,6 +89,11 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "series.csv").write_text("torque_max [N.m],area [J]\n30,0.09\n45,0.2\n60,0.36\n75,0.56\n")
     (folder / "move.toml").write_text(MOVE)
     (folder / "wear.csv").write_text(WEAR)
+    for load in (20.0, 40.0):  # torsion loops
+        elastic = load * np.sin(np.pi * np.linspace(0.5, 4.5, 801))
+        torque = elastic + (1.0 + 0.02 * np.abs(elastic)) * np.sign(np.gradient(elastic))
+        loop = {"twist": elastic / 3e4, "torque": torque}
+        sw.Recording(loop, {"twist": "rad", "torque": "N.m"}).to_csv(folder / f"{load:g}Nm.csv")
     made = strainwave(*["identify", "hfuc-20-80", "robot_log.csv", "--constant", "torque_constant=0.0755"], folder=folder)
     assert made.returncode == 0, made.stderr
     shutil.copy(folder / "out" / "identify" / "gear.toml", folder)

@@ -64,6 +64,11 @@ def test_what_makes_no_plan_is_refused_in_words_of_the_command(tmp_path: Path, o
     assert said.stderr.count("\n") == 1
 
 
+def test_a_time_that_is_enough_for_no_measurement_is_the_reason_for_none(tmp_path: Path) -> None:
+    said = strainwave("plan", "csg-25-100", *FRICTION, "--minutes", 0.1, folder=tmp_path)
+    assert said.stdout.startswith("Plan: no measurement fits in 0.1 min; the shortest takes 0.667 min")
+
+
 def test_a_limit_that_no_rating_states_is_asked_for(tmp_path: Path) -> None:
     said = strainwave("plan", "hfuc-50-120", *FRICTION, folder=tmp_path)
     assert said.stderr.startswith("strainwave: --speed-limit is needed for friction")
@@ -81,3 +86,21 @@ def test_loops_that_were_measured_lead_to_those_that_separate_their_sources(tmp_
     assert "bearing, dry" in said.stdout
     refused = strainwave("plan", "hfuc-25-100", "--want", "bearing", "--loop", "loop.csv", folder=tmp_path)
     assert '"bearing" is no source of these loops' in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--criterion", "D"), "--loop plans by the loops that were measured, up to their torque; leave out --criterion"),
+        (("--torque-limit", "50 N.m"), "leave out --torque-limit"),
+        (("--speed-limit", "50 rpm"), "leave out --speed-limit"),
+        (("--noise", "torsion=1"), "leave out --noise"),
+        (("--experiment", "friction"), "--loop plans torsion loops; leave out other experiments"),
+        ((), 'none.csv: no column "input_angle"; there are work, play'),
+    ],
+)
+def test_what_a_plan_of_loops_does_not_use_is_refused(tmp_path: Path, options: tuple[str, ...], message: str) -> None:
+    (tmp_path / "none.csv").write_text("work [J],play [rad]\n0,1\n1,2\n")
+    said = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "none.csv", *options, folder=tmp_path)
+    assert (said.returncode, said.stdout) == (2, "")
+    assert message in said.stderr

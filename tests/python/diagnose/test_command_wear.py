@@ -74,6 +74,20 @@ def test_hours_stand_for_the_work_of_a_duty(tmp_path: Path) -> None:
     assert np.ptp(tests.values["play"]) == pytest.approx(6e-5)
 
 
+def test_a_table_in_the_unit_of_the_report_has_the_resolution_that_was_written(tmp_path: Path) -> None:
+    path = tmp_path / "table.csv"
+    path.write_text("work [MJ],play [mrad]\n0,0.10\n1,0.13\n2,0.16\n")
+    tests = read_wear_tests([path], ["play"])
+    assert (tests.work, tests.resolution) == ((0.0, 1e6, 2e6), {"play": pytest.approx(1e-5)})
+
+
+def test_work_may_be_repeated(tmp_path: Path) -> None:
+    (tmp_path / "idle.csv").write_text("play [rad]\n1e-4\n1.3e-4\n1.6e-4\n")
+    work = ("--work", 0, "--work", 1e6, "--work", 2e6)
+    done = strainwave("diagnose", "wear", "idle.csv", "--limit", "play=1e-3", *work, folder=tmp_path)
+    assert "3 tests over 2 MJ" in done.stdout, done.stderr
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
@@ -82,8 +96,12 @@ def test_hours_stand_for_the_work_of_a_duty(tmp_path: Path) -> None:
         (("table.csv", "--limit", "play=3 N.m"), 'cannot convert "N.m" to "rad"'),
         (("table.csv", "--limit", "play=-1"), "--limit play = -1.0 rad must lie in (0, inf)"),
         (("table.csv", "--limit", "stiffness=1e4"), 'table.csv has no column "stiffness"; it has "work", "play", "friction"'),
-        (("table.csv", "--limit", "play=1", "--work", "1,2"), "--work has 2 numbers for 4 tests"),
-        (("table.csv", "--limit", "play=1", "--work", "1,2,3,x"), '"x" is no number'),
+        (("table.csv", "--limit", "play=1", "--limit", "play=2"), "--limit play is given twice; give one"),
+        (("table.csv", "--limit", "play=1", "--work", "0,1,2,3"), "table.csv has a column work, and --work is given, too"),
+        (("table.csv", "--limit", "friction=1"), "the first test is past the limit of the friction: 2 N·m, limit 1 N·m"),
+        (("table.csv", "idle.csv", "--limit", "play=1"), "table.csv is a table, and one of 2 files; give one table"),
+        (("idle.csv", "--limit", "play=1", "--work", "1,2"), "--work has 2 numbers for 3 tests"),
+        (("idle.csv", "--limit", "play=1", "--work", "1,2,x"), '"x" is no number'),
         (("idle.csv", "--limit", "play=1"), "idle.csv has no column work [J]; give --work-per-hour of the duty"),
         (("0.toml", "1e+06.toml", "2e+06.toml", "--limit", "stiffness=1e4"), "gear files do not contain the work of the gear"),
         (("0.toml", "1e+06.toml", "2e+06.toml", "--work", "0,1,2", "--limit", "play=1"), "no number is the play of all gears"),

@@ -57,6 +57,26 @@ def test_a_gear_that_does_not_wear_has_no_life() -> None:
         _ = undetermined.onset
 
 
+def test_tests_on_a_line_have_the_noise_of_their_last_digit() -> None:
+    """True values between the written ones: the interval of three tests that lie on a line by chance contains their life."""
+    random, work = np.random.default_rng(3), np.array([0.0, 1e6, 2e6])
+    covered = on_line = 0
+    for slope, start in zip(random.uniform(2e-11, 4e-11, GEARS), random.uniform(0.9e-4, 1.1e-4, GEARS), strict=True):
+        play = np.round(start + slope * work, 5)
+        life = sw.diagnose.wear_life(work, {"play": play.tolist()}, {"play": LIMIT}, resolution={"play": 1e-5})
+        if abs(np.diff(play, 2).item()) < 1e-9:
+            on_line += 1
+            covered += life.low <= (LIMIT - start) / slope - work[-1] <= life.high
+    assert on_line > 0.3 * GEARS
+    assert covered > 0.95 * on_line
+
+
+def test_a_limit_that_the_first_test_is_past_is_refused() -> None:
+    values = {"stiffness": [2.0e4, 1.95e4, 1.85e4]}
+    with pytest.raises(ValueError, match="the stiffness: 20 kN·m/rad, limit 25 kN·m/rad, and wear lowers it"):
+        sw.diagnose.wear_life([0.0, 1e6, 2e6], values, {"stiffness": 25e3})
+
+
 def test_a_quantity_that_moves_away_from_its_limit_promises_nothing() -> None:
     life = sw.diagnose.wear_life([0.0, 1e6, 2e6, 3e6], {"stiffness": [1.0e4, 1.1e4, 1.2e4, 1.3e4]}, {"stiffness": 8e3})
     assert (life.low, life.high, life.limited_by) == (0.0, inf, "")

@@ -161,3 +161,18 @@ def test_a_mesh_stiffness_at_the_output_needs_its_lever(tmp_path: Path) -> None:
     found = MeshTable.read(tmp_path / "mesh.csv", lever=0.1)
     assert found.mesh_stiffness is not None
     assert found.mesh_stiffness.tolist() == pytest.approx([200.0])
+
+
+def test_the_two_shapes_of_a_mode_that_travels_are_one_mode() -> None:
+    squares = np.array([0.117, 0.221, 0.4, 0.4, 0.3, 0.3])  # n = 2, 20 deg: sin^2 and cos^2 / 4 by the phase of the shapes
+    frequency = np.array([1000.0, 1000.2, 2000.0, 2000.0, 1000.0, 3000.0])
+    waves = np.array([2.0, 2.0, 0.0, 0.0, 3.0, 3.0])  # two modes that do not travel are no pair, nor are others of 3 waves
+    modes = ModeTable(frequency, waves, np.full(6, 0.01), 1.0 / squares)
+    assert 1.0 / modes.joined.mass == pytest.approx([0.338, 0.4, 0.4, 0.3, 0.3])
+    assert modes.joined.joined == modes.joined
+    assert len(modes.ring.mass) == 4
+    assert modes.remarks[0] == "1 pair of rows with equal waves and frequency joined to one mode each"
+    assert modes.remarks[1].startswith("a ring has 4 modes; left out: 3000 Hz")
+    whole = ModeTable(frequency[:1], waves[:1], np.array([0.01]), 1.0 / squares[:1] / 2.0)
+    assert whole.joined == whole
+    assert whole.remarks == []

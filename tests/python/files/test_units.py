@@ -56,6 +56,8 @@ def exactly(message: str) -> str:
         (1.0, "N.m.s/rad", "N.m/(r/min)", math.pi / 30),
         (1.0, "V/rpm", "V.s/rad", 30 / math.pi),
         (1.0, "N.m", "kg.m2/s2", 1.0),
+        (1.0, "kWh", "MJ", 3.6),
+        (1.0, "Wh", "J", 3600.0),
         (1.0, "Ohm.A", "mV", 1000.0),
         (1.0, "H", "V.s/A", 1.0),
         (20.0, "°C", "K", 293.15),

@@ -24,7 +24,7 @@ from strainwave.identification.experiments.experiment import sensible
 from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.statistics.covariance import covariance_of, posterior_of
 from strainwave.statistics.linear_fit import normal_inverse, solved
-from strainwave.statistics.residuals import chance_of_gain, correlation_length
+from strainwave.statistics.residuals import chance_of_gain, correlation_length, shape
 from strainwave.statistics.scale import ONE_SIGMA, noise_sigma, student
 
 Array = NDArray[np.float64]
@@ -43,6 +43,7 @@ MAX_ROWS_OF_LEVEL = 2_000  # of a stretch, of which its level is found; a longer
 MIN_GRAVITY_ANGLE = 0.2  # rad: over less gravity is a constant
 ASYMMETRY_SIGMA = 0.1  # relative, of the friction of one direction to that of the other (assumed)
 MAX_CHANCE_OF_GRAVITY = 1e-3  # probability that chance explains as much as gravity does
+MAX_CHANGE_OF_GRAVITY = 0.1  # by a wave of order two: beyond, a residual with a shape is that of another load
 MAX_LEVEL_SIGMA = 0.5  # of a level over the usual level: beyond, gravity cannot be separated from it
 FULL_TURN = 2.0 * np.pi  # rad
 ORDER_COUNT = 10  # harmonics of the position control article, and of the law
@@ -143,7 +144,7 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
     Gravity is one wave over the angle for all stretches: their angles must count from one zero. Friction may vary over the
     angle, too, so that motion one way does not separate them. Short stretches at one place determine only the sum of gravity
     and of a friction that differs between the directions. Therefore levels at equal speeds both ways are taken to be equal
-    within 10 % (assumed).
+    within 10 % (assumed). A load of another order over the angle is no gravity, if the residual shows it.
 
     Args:
         torques: of each stretch [N.m]
@@ -157,7 +158,20 @@ def levels_of(torques: Sequence[Array], angles: Sequence[Array | None], speeds: 
         return alone
     levels, left, before = _with_gravity(shorter, speeds, _symmetry(speeds, alone.torque))
     entangled = levels.sigma.max() > MAX_LEVEL_SIGMA * float(np.median(np.abs(levels.torque)))
-    return alone if entangled or _chance(before, left, len(shorter) + 4) > MAX_CHANCE_OF_GRAVITY else levels
+    by_chance = _chance(before, left, len(shorter) + 4) > MAX_CHANCE_OF_GRAVITY
+    return alone if entangled or by_chance or _is_another_load(shorter, levels, left) else levels
+
+
+def _is_another_load(stretches: Sequence[tuple[Array, Array | None]], levels: Levels, left: Sequence[Array]) -> bool:
+    """True if the residual has a shape over the angle, and its wave of order two moves gravity by more than a tenth."""
+    angle, residual = np.concatenate([angle for _, angle in stretches if angle is not None]), np.concatenate(left)
+    of_residual = shape(residual, angle)
+    if of_residual is None or of_residual.chance > MAX_CHANCE_OF_GRAVITY:
+        return False
+    columns = np.repeat(np.eye(len(left)), [len(each) for each in left], axis=0)
+    waves = [wave(order * angle) for order in (1.0, 2.0) for wave in (np.cos, np.sin)]
+    moved = solved(np.column_stack((columns, *waves)), residual)[len(left) : len(left) + 2]
+    return bool(np.hypot(*moved) > MAX_CHANGE_OF_GRAVITY * np.hypot(levels.cosine, levels.sine))
 
 
 def _means(torques: Sequence[Array]) -> Levels:

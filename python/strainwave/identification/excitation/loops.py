@@ -12,15 +12,23 @@ from strainwave._core import Gear
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.torsion.losses import MAX_SHARE_SIGMA, FurtherLoops, further_loops
 from strainwave.identification.excitation.candidates import score
-from strainwave.identification.excitation.plan import USUAL_DURATIONS, Expectation, ExperimentPlan, PlannedMeasurement
+from strainwave.identification.excitation.plan import (
+    USUAL_DURATIONS,
+    Expectation,
+    ExperimentPlan,
+    PlannedMeasurement,
+    too_short,
+)
 from strainwave.identification.experiments.loss_loop import LossLoop
 from strainwave.messages import listed, quoted
 from strainwave.typeset import percent, quantity
 
 Array = NDArray[np.float64]
 CYCLES = 2.0  # of a loop: the first ends transients of bristles
+MIN_GAIN_OF_SHARE = 1e-6  # relative, of a standard deviation: rounding below it
 WARMING_TIME = 1800.0  # s until a gear has another temperature throughout (assumed)
 ALL_SOURCES = "loss"
+NO_LOOP_NEEDED = "no loop is needed: of each wanted share, noise leaves less open than the forms of the sources do"
 
 
 def plan_loops(
@@ -38,14 +46,16 @@ def plan_loops(
         time: what all loops may take together [s]
 
     Returns:
-        The loops, and the standard deviation of each share [1] before and after them.
+        The loops, and the standard deviation of each share [1] before and after them. Without a loop at the input so far, that
+        of the bearing is in units of the loss at the output, infinite before, and without a value.
 
     Raises:
         ValueError: no such source; else as `loss_shares`
 
     Valid near the shares that the loops determine: plan anew after each loop. Loops reach at most the torque of the largest one
-    so far, at up to five times its rate, and 20 K warmer if loops at two temperatures are there. A load on one side, or another
-    angle of the input, is not tried.
+    so far, at up to five times its rate, and 20 K warmer if loops at two temperatures are there. The noise of the torque is
+    assumed to be that of the loops so far, at the input referred to the output. A load on one side, or another angle of the
+    input, is not tried, nor a loop at the input of a gear with stages.
 
     Source: as `plan_experiments`.
 
@@ -60,7 +70,7 @@ def plan_loops(
     (['output'], 0.7)
     """
     further = further_loops(loops, gear)
-    names = [each.name for each in further.shares.shares]
+    names = [*further.sources]
     asked = [*arguments.names("wanted", wanted)]
     for name in asked:
         if name not in (ALL_SOURCES, *names):
@@ -69,12 +79,21 @@ def plan_loops(
     chosen = names if ALL_SOURCES in asked else [name for name in names if name in asked]
     places = [names.index(name) for name in chosen]
     cost = np.array([_duration(each, further.temperature) for each in further.loops])
-    taken, covariance = _taken(further, places, cost, arguments.seconds("time", time))
+    budget = arguments.seconds("time", time)
+    taken, covariance = _taken(further, places, cost, budget)
     steps = tuple(
         PlannedMeasurement("torsion", further.loops[place].words, _settings(further.loops[place]), 1, float(cost[place]))
         for place in taken
     )
-    return ExperimentPlan(steps, tuple(_expectations(further, covariance, chosen)), tuple(_notes(further)))
+    expectations = tuple(_expectations(further, covariance, chosen))
+    is_open = _is_open(further, further.covariance, places)
+    reason = too_short(budget, cost) if is_open else {"reason": NO_LOOP_NEEDED}
+    return ExperimentPlan(steps, expectations, tuple(_notes(further)), **reason)
+
+
+def _is_open(further: FurtherLoops, covariance: Array, wanted: Sequence[int]) -> bool:
+    """True if noise leaves more open of a wanted share than the forms of the sources do."""
+    return bool(np.any(np.sqrt(np.diag(covariance)[wanted]) > further.floors[wanted]))
 
 
 def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: float) -> tuple[list[int], Array]:
@@ -84,7 +103,7 @@ def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: fl
     """
     information = np.asarray(np.linalg.inv(further.covariance), float)
     taken, covariance, left = list[int](), further.covariance, budget
-    while np.any(np.sqrt(np.diag(covariance)[wanted]) > further.floors[wanted]):
+    while _is_open(further, covariance, wanted):
         affordable = np.flatnonzero(cost <= left)
         if not affordable.size:
             break
@@ -119,12 +138,16 @@ def _settings(loop: LossLoop) -> dict[str, float | str]:
 
 def _expectations(further: FurtherLoops, covariance: Array, wanted: Sequence[str]) -> Iterator[Expectation]:
     """Yield the standard deviation of each share before and after loops with this covariance."""
-    for place, share in enumerate(further.shares.shares):
-        after = min(float(np.hypot(np.sqrt(covariance[place, place]), further.floors[place])), share.sigma)
+    measured = {share.name: (share.share, share.sigma) for share in further.shares.shares}
+    for place, name in enumerate(further.sources):
+        value, before = measured.get(name, (np.nan, np.inf))
+        sigma, after = float(np.sqrt(covariance[place, place])), before
+        if sigma < (1.0 - MIN_GAIN_OF_SHARE) * np.sqrt(further.covariance[place, place]):
+            after = min(float(np.hypot(sigma, further.floors[place])), before)
         by_forms = further.floors[place] > MAX_SHARE_SIGMA
         short = "the loops depart from the forms of all sources" if by_forms else "these loops do not separate it in this time"
         why = "" if after <= MAX_SHARE_SIGMA else short
-        yield Expectation(share.name, "1", share.share, share.sigma, after, share.name in wanted, why)
+        yield Expectation(name, "1", value, before, after, name in wanted, why)
 
 
 def _notes(further: FurtherLoops) -> Iterator[str]:

@@ -79,7 +79,7 @@ class Expectation(Presented):
     """Uncertainty of a parameter before and after a plan.
 
     Attributes:
-        path, unit, value: the parameter in the model
+        path, unit, value: the parameter in the model; not a number if nothing was measured of it
         before, after: standard deviation, in its unit; infinite where it is not known
         wanted: True if the plan was made for it
         why: the limit of its uncertainty, if that exceeds 10 %; else empty
@@ -109,6 +109,7 @@ class ExperimentPlan(Pictured):
         steps: the measurements
         expectations: of each parameter that is not known
         notes: assumptions of the numbers
+        reason: why there are no measurements, if there are none
 
     >>> step = PlannedMeasurement("friction", "hold 10 rad/s at the input", {"input_speed_rad_s": 10.0}, 3, 60.0)
     >>> plan = ExperimentPlan((step,), (Expectation("gear.damping", "N.m.s/rad", 2.0, np.inf, 0.5, True, ""),), ())
@@ -120,6 +121,7 @@ class ExperimentPlan(Pictured):
     steps: tuple[PlannedMeasurement, ...]
     expectations: tuple[Expectation, ...]
     notes: tuple[str, ...]
+    reason: str = "no measurement within the limits adds information"
 
     @property
     def duration(self) -> float:
@@ -135,7 +137,7 @@ class ExperimentPlan(Pictured):
 
     def _headline(self) -> str:
         if not self.steps:
-            return "no measurement within the limits adds information"
+            return self.reason
         duration = f"{counted(len(self.steps), 'measurement')}, {self.duration / 60.0:.3g} min"
         wanted = [each for each in self.expectations if each.wanted]
         gains = not wanted or any(each.gain >= MIN_GAIN for each in wanted)
@@ -149,6 +151,8 @@ class ExperimentPlan(Pictured):
             before = "unknown" if np.isinf(each.before) else f"± {typeset.number(each.before, 3)}"
             if np.isinf(each.after):
                 yield Row(each.path, each.value, each.unit, note="stays unknown")
+            elif np.isnan(each.value):
+                yield Row(each.path, f"± {typeset.number(each.after, 2)}", note=f"was {before}")
             else:
                 yield Row(each.path, each.value, each.unit, each.after, f"was {before}")
 
@@ -168,7 +172,7 @@ class ExperimentPlan(Pictured):
         """
         from strainwave.drawing.simple import bars_figure
 
-        determined = [each for each in self.expectations if np.isfinite(each.after) and each.value]
+        determined = [each for each in self.expectations if np.isfinite(each.after / each.value if each.value else np.nan)]
         if not determined:
             raise ValueError("the plan determines no parameter, so there is nothing to draw")
         before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in determined]
@@ -176,6 +180,13 @@ class ExperimentPlan(Pictured):
         names = [each.path for each in determined]
         bars = ({"before": before} if np.isfinite(before).any() else {}) | {"after": after}
         return bars_figure("Standard deviation over the value", names, bars, "%")
+
+
+def too_short(budget: float, cost: NDArray[np.float64]) -> dict[str, str]:
+    """Return the reason of a plan without measurements if the time is enough for none, as an argument of `ExperimentPlan`."""
+    if budget >= cost.min():
+        return {}
+    return {"reason": f"no measurement fits in {budget / 60.0:.3g} min; the shortest takes {cost.min() / 60.0:.3g} min"}
 
 
 def plan_experiments(
@@ -307,7 +318,8 @@ def plan_experiments(
         )
         for each, often in taken
     )  # fmt: skip
-    return ExperimentPlan(steps, expectations, _notes(kinds, limits, noise, sensors, resolution or {}))
+    notes = _notes(kinds, limits, noise, sensors, resolution or {})
+    return ExperimentPlan(steps, expectations, notes, **too_short(budget, cost))
 
 
 def _whole(model: object, moves: bool) -> Any:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from strainwave import Gear, stiffness, structure, variation
+from strainwave import Gear, stiffness, structure, typeset, variation
 from strainwave.analysis.torsion_loop import series_compliance
 from strainwave.files.described import all_paths
 from strainwave.files.entries import Entry
@@ -17,26 +17,20 @@ from strainwave.files.mesh_table import ModeTable
 from strainwave.messages import shortened
 from strainwave.orders.mesh.error import StiffnessVariation
 
+if TYPE_CHECKING:
+    from strainwave.orders.mesh.laws import MeshLaws
 
-class Laws(Protocol):
-    """Laws of a table, as `MeshLaws` has them."""
-
-    @property
-    def kinematic_error(self) -> Any: ...
-    @property
-    def stiffness(self) -> Any: ...
-    @property
-    def stiffness_variation(self) -> Any: ...
-    @property
-    def mesh_stiffness(self) -> float | None: ...
-    @property
-    def mesh_variation(self) -> Any: ...
-    @property
-    def source(self) -> str: ...
+MIN_EXPLAINED_SHARE = 0.5  # of the squares of the varying transmission error, by laws that a gear may have
 
 
-def applied(laws: Laws, before: GearSet, stages: Any, modes: ModeTable | None) -> GearSet:
+def applied(laws: MeshLaws, before: GearSet, stages: Any, modes: ModeTable | None) -> GearSet:
     """Return a set with laws of a table, stages and modes; see `MeshLaws.applied_to`."""
+    if laws.orders and laws.explained_share < MIN_EXPLAINED_SHARE:
+        share = typeset.percent(laws.explained_share)
+        raise ValueError(
+            f"the laws explain {share} of the transmission error of {laws.source} alone; choose one load by load=, or compare "
+            "the loads with each other"
+        )
     return _Application(laws, before, stages, modes).gear_set()
 
 
@@ -44,7 +38,7 @@ def applied(laws: Laws, before: GearSet, stages: Any, modes: ModeTable | None) -
 class _Application:
     """Laws, the set that they are put into, stages for it, and modes of its ring."""
 
-    laws: Laws
+    laws: MeshLaws
     before: GearSet
     stages: Any
     modes: ModeTable | None
@@ -72,7 +66,7 @@ class _Application:
         return self.before.replace(gear=gear, sources=sources | others, covariance=covariance, note=note)
 
     def _stages(self) -> tuple[Any, list[str]]:
-        """Return the stages with what the tables determine, and notes on modes that are left out."""
+        """Return the stages with what the tables determine, and remarks on modes joined or left out."""
         old = self.before.gear.structure
         stages = self.stages if self.stages is not None else old if isinstance(old, structure.Staged) else None
         if stages is not None and not isinstance(stages, structure.Staged):
@@ -90,7 +84,7 @@ class _Application:
             stages = stages.replace(mesh_stiffness=self.laws.mesh_stiffness, mesh_variation=varying)
         if self.modes is None:
             return stages, []
-        return stages.replace(ring=self.modes.ring), self.modes.left_out
+        return stages.replace(ring=self.modes.ring), self.modes.remarks
 
     def _spring(self, stages: Any) -> dict[str, Any]:
         """Return the spring and its variation, which with the stages in series have the whole compliance."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log
 from typing import Any
 
@@ -94,26 +94,19 @@ class ErrorFit:
     Attributes:
         spring: of the whole gear; None if it is not determined
         wound: True if the spring follows from the transmission error
-        error: complex amplitudes of the error without load [rad], shape (h,); zeros of those that noise makes
-        sensitivity, sensitivity_sigma: relative fall of the error with the torque [1/(N.m)], and its standard deviation
         variation: of the stiffness
-        noise: standard deviation of an amplitude of the error by the noise of the solver [rad]
-        misfit: root mean square over the loads of what the laws leave of each order [rad], shape (h,)
-        remarks: in words
+        orders: of the error, over the loads; without those that noise makes
     """
 
     spring: SpringFit | None
     wound: bool
-    error: Complex
-    sensitivity: float
-    sensitivity_sigma: float
     variation: StiffnessVariation
-    noise: float
-    misfit: Array
-    remarks: tuple[str, ...]
+    orders: LoadFit
 
 
-def error_fit(error: Harmonics, of_spring: Harmonics | None, given: StiffnessVariation | None, false_alarm: float) -> ErrorFit:
+def error_fit(
+    error: Harmonics, of_spring: Harmonics | None, given: StiffnessVariation | None, loads: slice, false_alarm: float
+) -> ErrorFit:
     """Return the fit of the transmission error.
 
     What the laws do beyond the first order is computed from the last fit and taken out of the data.
@@ -122,61 +115,41 @@ def error_fit(error: Harmonics, of_spring: Harmonics | None, given: StiffnessVar
         error: of the transmission error
         of_spring: of the column stiffness; None without
         given: variation by that column; None without
+        loads: at which the orders are fitted; the spring is fitted to the means at all
+        false_alarm: probability that noise makes an order
 
     Raises:
         ValueError: the error falls as the torque rises, or the column stiffness contradicts it
     """
-    kept, noise, wound = error.significant(false_alarm), float(np.sqrt(error.floor)), winds_up(error, of_spring)
+    kept, wound = error.significant(false_alarm), winds_up(error, of_spring)
     varying = given or StiffnessVariation(np.zeros(len(kept), complex), None, ())
-    spring, fit = _round(error, of_spring, kept, wound, given is None, np.zeros(len(error.torque)), np.zeros_like(error.waves))
+    shift, beyond, before = np.zeros(len(error.torque)), np.zeros_like(error.waves), None
     for _ in range(ROUNDS):
+        spring = _spring(error, of_spring, wound, shift)
+        compliance = spring.compliance(error.torque)[loads] if spring is not None and given is None else None
+        fit = load_fit(error.torque[loads], compliance, np.where(kept, error.waves - beyond, 0.0)[loads], error.noise)
         if given is None:
-            varying = StiffnessVariation.of_waves("stiffness", error.orders, _placed(fit.variation, kept))
+            varying = StiffnessVariation.of_waves("stiffness", error.orders, fit.variation)
+        now = np.concatenate([fit.error, fit.variation])
         if spring is None or (varying.law is None and fit.sensitivity == 0.0):
             break
-        shift, beyond = _beyond_first_order(spring, error, _placed(fit.error, kept), fit.sensitivity, varying)
+        if before is not None and np.allclose(now, before, rtol=CONVERGED, atol=0.0):
+            break
+        before = now
+        shift, beyond = _beyond_first_order(spring, error, fit.error, fit.sensitivity, varying)
         if given is not None:
             beyond += np.outer(-error.torque * spring.compliance(error.torque), varying.waves)
-        before = fit
-        spring, fit = _round(error, of_spring, kept, wound, given is None, shift, beyond)
-        if np.allclose([fit.error, fit.variation], [before.error, before.variation], rtol=CONVERGED, atol=0.0):
-            break
-    waves = _placed(fit.error, kept)
-    least = max(
-        fit.sigma * noise * np.sqrt(log(error.waves.size / false_alarm)), RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0))
-    )
-    waves[np.abs(waves) < least] = 0.0
-    misfit = np.zeros(len(kept))
-    misfit[kept] = fit.misfit
-    return ErrorFit(
-        spring, wound, waves, fit.sensitivity, fit.sensitivity_sigma, varying, fit.sigma * noise, misfit, fit.remarks
-    )
+    by_noise = error.noise * np.sqrt(log(error.waves.size / false_alarm) / len(error.torque[loads]))
+    least = max(by_noise, RELATIVE_NOISE * float(np.abs(fit.error).max(initial=0.0)))
+    fit = replace(fit, error=np.where(np.abs(fit.error) < least, 0.0, fit.error))
+    return ErrorFit(spring, wound, varying, fit)
 
 
-def _round(
-    error: Harmonics,
-    of_spring: Harmonics | None,
-    kept: NDArray[np.bool_],
-    wound: bool,
-    is_free: bool,
-    shift: Array,
-    known: Complex,
-) -> tuple[SpringFit | None, LoadFit]:
-    """Return spring and orders over the load, less what is known of the means and of the waves."""
-    noise, spring = float(np.sqrt(error.floor)), None
+def _spring(error: Harmonics, of_spring: Harmonics | None, wound: bool, shift: Array) -> SpringFit | None:
+    """Return the spring by the mean error less what is known of it, or by the column stiffness."""
     if wound:
-        spring = spring_fit(error.torque, error.mean - shift, 0.5 * noise)
-    elif of_spring is not None:
-        spring = spring_by_tangents(of_spring)
-    compliance = spring.compliance(error.torque) if spring is not None and is_free else None
-    return spring, load_fit(error.torque, compliance, (error.waves - known)[:, kept], noise)
-
-
-def _placed(waves: Complex, kept: NDArray[np.bool_]) -> Complex:
-    """Return waves of the orders that are kept among those of all orders."""
-    placed = np.zeros(len(kept), complex)
-    placed[kept] = waves
-    return placed
+        return spring_fit(error.torque, error.mean - shift, 0.5 * error.noise)
+    return None if of_spring is None else spring_by_tangents(of_spring)
 
 
 def _beyond_first_order(
@@ -249,7 +222,7 @@ def winds_up(error: Harmonics, of_spring: Harmonics | None) -> bool:
         return False
     span, wound = float(np.ptp(error.torque)), float(error.mean[-1] - error.mean[0])
     largest = float(np.abs(error.waves).max(initial=0.0))
-    small = max(MIN_WINDUP_SIGMA * 0.5 * float(np.sqrt(error.floor)), MIN_WINDUP_OF_ORDERS * largest)
+    small = max(MIN_WINDUP_SIGMA * 0.5 * error.noise, MIN_WINDUP_OF_ORDERS * largest)
     if wound < -max(small, 0.5 * largest):
         raise ValueError(
             f"the mean transmission error falls by {-wound:.4g} rad as the torque rises by {span:g} N.m; input angle / ratio - "

@@ -15,19 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
+from strainwave.messages import MAX_NAMES, in_a_sentence
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MAX_ORDERS = 1024  # that are looked for at even angles, multiples of `repeats`
-MAX_ORDERS_OF_UNEVEN = 64  # likewise at uneven angles, by normal equations
+MAX_ORDERS = 1024  # that are looked for, multiples of `repeats`
 EVEN_STEP = 1e-6  # relative difference of steps that are even
 MAX_LOAD_SPREAD = 1e-3  # of the largest torque, by which rows of one load differ, as a solver's tolerance makes them
 MAX_LOAD_COUNT = 1000
 ROWS_PER_BLOCK = 8192  # whose normal equations are summed at once
+MIN_ORDERS_OF_NOISE = 16  # of fewer a quarter is no sample of noise
 FLOOR_QUANTILE = 0.25  # of the squares of all amplitudes: noise makes it as long as three of four orders contain something
-RELATIVE_ROUNDING = 1e-12  # of the largest amplitude: a smaller one is rounding
+MAX_LEVEL_RATIO = 10.0  # of the floors of the lower and the higher orders; noise of 16 orders exceeds it in 2 % of tables
+RELATIVE_ROUNDING = 1e-10  # of the largest amplitude: a smaller one is rounding
+MAX_OTHER_ORDER = 0.1  # of the largest amplitude, of an order that is no multiple of `repeats`
+FALSE_REFUSAL = 1e-6  # probability that noise makes such an order
 UNEVEN_GAP = 1.5  # times the usual distance of angles, from which a gap is named
+NO_NOISE = "the noise of the solver is not determined"
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +44,7 @@ class Harmonics(ComparedByFields):
         orders: that the angles determine [1], shape (h,)
         mean: over the angle, in the unit of the quantity, shape (m,)
         waves: complex amplitudes in the unit of the quantity, shape (m, h)
-        floor: mean square of the amplitude that noise of the solver makes of an order
-        gap: largest distance of neighbouring angles [rad]
+        noise: standard deviation of a complex amplitude by the noise of the solver; 0 if that is rounding, or not determined
         remarks: in words
     """
 
@@ -48,8 +52,7 @@ class Harmonics(ComparedByFields):
     orders: Array
     mean: Array
     waves: Complex
-    floor: float
-    gap: float
+    noise: float
     remarks: tuple[str, ...]
 
     def significant(self, false_alarm: float) -> NDArray[np.bool_]:
@@ -58,11 +61,12 @@ class Harmonics(ComparedByFields):
         Args:
             false_alarm: probability that noise alone makes any order of any load stand out
         """
-        threshold = self.floor * log(self.waves.size / false_alarm)
-        return np.asarray((np.abs(self.waves) ** 2 > threshold).any(axis=0))
+        squares = np.abs(self.waves) ** 2
+        threshold = max(self.noise**2 * log(squares.size / false_alarm), float(squares.max()) * RELATIVE_ROUNDING**2)
+        return np.asarray((squares > threshold).any(axis=0))
 
 
-def harmonics(angle: Array, torque: Array, values: Array, repeats: int) -> Harmonics:
+def harmonics(angle: Array, torque: Array, values: Array, repeats: float) -> Harmonics:
     """Return the harmonics of a quantity.
 
     Args:
@@ -74,22 +78,50 @@ def harmonics(angle: Array, torque: Array, values: Array, repeats: int) -> Harmo
     Raises:
         ValueError: the angles of a load determine no order, or the torque is no few loads
     """
+    period = tau / repeats
     rows_of_loads = _loads(torque)
-    gaps = [_largest_gap(angle[rows], tau / repeats) for rows in rows_of_loads]
+    gaps = [_largest_gap(angle[rows], period) for rows in rows_of_loads]
     loads = np.array([torque[rows].mean() for rows in rows_of_loads])
     worst = int(np.argmax(gaps))
-    are_even = all(_is_even(angle[rows], tau / repeats) for rows in rows_of_loads)
-    most = MAX_ORDERS if are_even else MAX_ORDERS_OF_UNEVEN
-    count = min(int(np.ceil(np.pi / (repeats * gaps[worst]) * (1.0 - EVEN_STEP))) - 1, most)
+    count = min(int(np.ceil(0.5 * period / gaps[worst] * (1.0 - EVEN_STEP))) - 1, MAX_ORDERS)
     if count < 1 or any(len(rows) > 1 and np.diff(np.unique(angle[rows])).max(initial=0.0) > np.pi for rows in rows_of_loads):
         raise ValueError(_undetermined(angle[rows_of_loads[worst]], float(loads[worst]), gaps[worst], repeats))
     orders = repeats * np.arange(1.0, count + 1.0)
-    fit = _transform if are_even else _fit
-    fits = [fit(angle[rows], values[rows], repeats, count) for rows in rows_of_loads]
+    fits = [_fit(angle[rows], values[rows], repeats, count) for rows in rows_of_loads]
     mean, waves = np.array([fit[0] for fit in fits]), np.array([fit[1] for fit in fits])
-    return Harmonics(
-        loads, orders, mean, waves, _floor(waves), gaps[worst], tuple(_of_gap(angle[rows_of_loads[worst]], gaps[worst], orders))
-    )
+    noise, of_noise = _noise(waves)
+    remarks = *_of_gap(angle[rows_of_loads[worst]], gaps[worst], orders), *of_noise
+    return Harmonics(loads, orders, mean, waves, noise, remarks)
+
+
+def check_repeats(angle: Array, torque: Array, values: Array, repeats: int) -> None:
+    """Raise ValueError if a table of several periods has orders that contradict the number of times that all repeats."""
+    period = tau / repeats
+    span = float(np.ptp(angle)) + float(np.diff(np.unique(angle)).max(initial=0.0))
+    periods = min(int(span / period * (1.0 + EVEN_STEP)), repeats)
+    if periods < 2:
+        return
+    rows = angle < angle.min() + periods * period * (1.0 - EVEN_STEP)
+    found = harmonics(angle[rows], torque[rows], values[rows], repeats / periods)
+    amplitude = np.abs(found.waves).max(axis=0)
+    others = found.significant(FALSE_REFUSAL) & (amplitude > MAX_OTHER_ORDER * amplitude.max())
+    others[periods - 1 :: periods] = False
+    if others.any():
+        names, sizes = (in_a_sentence([f"{each:.4g}" for each in of[others][:MAX_NAMES]]) for of in (found.orders, amplitude))
+        raise ValueError(f"order {names} has an amplitude of {sizes} and is no multiple of repeats={repeats}; give repeats=1")
+
+
+def complete_loads(angle: Array, torque: Array, repeats: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
+    """Return the rows of loads without a hole that other loads do not have, shape (n,), and remarks on loads left out."""
+    rows_of_loads, kept, remarks = _loads(torque), np.ones(len(angle), bool), []
+    gaps = [_largest_gap(angle[rows], tau / repeats) for rows in rows_of_loads]
+    for rows, gap in zip(rows_of_loads, gaps, strict=True):
+        usual = max(float(np.median(np.diff(np.unique(angle[rows])))) if len(rows) > 1 else 0.0, min(gaps))
+        if gap > UNEVEN_GAP * usual:
+            kept[rows] = False
+            hole = f"angles are missing over {np.degrees(gap):.3g} deg"
+            remarks.append(f"at {torque[rows].mean():g} N.m {hole}: this load is left out; compute its missing rows")
+    return kept, tuple(remarks)
 
 
 def _loads(torque: Array) -> list[NDArray[np.int_]]:
@@ -108,7 +140,7 @@ def _largest_gap(angle: Array, period: float) -> float:
     return float(np.diff(np.append(within, within[0] + period)).max())
 
 
-def _undetermined(angle: Array, torque: float, gap: float, repeats: int) -> str:
+def _undetermined(angle: Array, torque: float, gap: float, repeats: float) -> str:
     """Return the message of angles that determine no order."""
     span, period = float(np.ptp(angle)), tau / repeats
     where = f"at {torque:g} N.m the angles go from {np.degrees(angle.min()):.4g} to {np.degrees(angle.max()):.4g} deg"
@@ -124,7 +156,7 @@ def _undetermined(angle: Array, torque: float, gap: float, repeats: int) -> str:
         )
         whole = f"{np.degrees(period):.4g} deg in which it repeats"
         return f"{where}, less than the {whole}: no order is determined{of_part}, or compute more"
-    needed = f"order {repeats} needs less than {180.0 / repeats:g} deg"
+    needed = f"order {repeats:g} needs less than {180.0 / repeats:g} deg"
     return f"{where}, {np.degrees(gap):.4g} deg apart: {needed}; check the unit of the angle, or compute more"
 
 
@@ -138,33 +170,16 @@ def _of_gap(angle: Array, gap: float, orders: Array) -> list[str]:
         remarks.append(
             f"the largest gap between angles is {np.degrees(gap):.3g} deg, the usual one {np.degrees(usual):.3g} deg"
         )
-    limits = MAX_ORDERS, MAX_ORDERS_OF_UNEVEN
-    why = f"the first {len(orders)} are looked for" if len(orders) in limits else "half the samples of a turn"
+    why = f"the first {len(orders)} are looked for" if len(orders) == MAX_ORDERS else "half the samples of a turn"
     return [*remarks, f"orders up to {orders[-1]:g} are determined ({why}); a higher one would appear as a lower one"]
 
 
-def _is_even(angle: Array, period: float) -> bool:
-    """True if angles cut a period into even steps."""
-    within = np.sort(np.mod(angle, period))
-    steps = np.diff(np.append(within, within[0] + period))
-    return bool(np.ptp(steps) < EVEN_STEP * period / len(angle))
-
-
-def _transform(angle: Array, values: Array, repeats: int, count: int) -> tuple[float, Complex]:
-    """Return the mean and the waves of values at angles that cut a period into even steps."""
-    within = np.mod(angle, tau / repeats)
-    order = np.argsort(within)
-    spectrum = np.fft.rfft(values[order]) / len(values)
-    turn = np.exp(-1j * repeats * within[order[0]] * np.arange(count + 1))
-    return float(spectrum[0].real), 2j * (spectrum[: count + 1] * turn)[1:]
-
-
-def _fit(angle: Array, values: Array, repeats: int, count: int) -> tuple[float, Complex]:
+def _fit(angle: Array, values: Array, repeats: float, count: int) -> tuple[float, Complex]:
     """Return the mean and the waves of the values of one load, by normal equations.
 
     In the waves exp(i k theta) of both signs of k their matrix is a Toeplitz matrix of sums of such waves over the rows.
     """
-    from scipy.linalg import toeplitz
+    from scipy.linalg import solve_toeplitz
 
     middle = float(values.mean())
     sums, right = np.zeros(2 * count + 1, complex), np.zeros(count + 1, complex)
@@ -178,12 +193,21 @@ def _fit(angle: Array, values: Array, repeats: int, count: int) -> tuple[float, 
                 right[k] += rest @ wave.conj()
             wave *= turn
     both = np.concatenate([right[:0:-1].conj(), right])
-    coefficients = np.linalg.solve(toeplitz(sums.conj(), sums), both)[count:]
+    coefficients = solve_toeplitz((sums.conj(), sums), both)[count:]
     return middle + float(coefficients[0].real), 2j * coefficients[1:]
 
 
-def _floor(waves: Complex) -> float:
-    """Return the mean square that noise makes: that of exponentially distributed squares with the same lower quartile."""
+def _noise(waves: Complex) -> tuple[float, tuple[str, ...]]:
+    """Return the standard deviation of an amplitude by noise, and a remark if it is not determined.
+
+    Noise has one level at all orders. Its mean square is that of exponentially distributed squares of the same lower quartile.
+    """
     squares = np.abs(waves) ** 2
-    noise = float(np.quantile(squares, FLOOR_QUANTILE)) / -log(1.0 - FLOOR_QUANTILE)
-    return max(noise, float(squares.max()) * RELATIVE_ROUNDING**2, 1e-300)
+    if squares.shape[1] < MIN_ORDERS_OF_NOISE:
+        return 0.0, (f"{NO_NOISE}: the angles determine fewer than {MIN_ORDERS_OF_NOISE} orders",)
+    lower, higher = (float(np.quantile(half, FLOOR_QUANTILE)) for half in np.array_split(squares, 2, axis=1))
+    if lower < float(squares.max()) * RELATIVE_ROUNDING**2:
+        return 0.0, ()
+    if lower > MAX_LEVEL_RATIO * higher:
+        return 0.0, (f"{NO_NOISE}: amplitudes fall up to the highest order, and reach no level; add angles",)
+    return float(np.sqrt(np.quantile(squares, FLOOR_QUANTILE) / -log(1.0 - FLOOR_QUANTILE))), ()

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from strainwave import Gear, arguments, kinematic_error, stiffness, typeset, variation
 from strainwave.equality import ComparedByFields
 from strainwave.files.gear_set import GearSet, gear_set_of
-from strainwave.files.mesh_table import MeshTable, ModeTable
+from strainwave.files.mesh_table import QUANTITY_UNITS, MeshTable, ModeTable
 from strainwave.messages import listed, shortened
 from strainwave.orders.mesh.application import applied
 from strainwave.orders.mesh.error import (
@@ -24,7 +24,7 @@ from strainwave.orders.mesh.error import (
     transmission_error,
     twists_of,
 )
-from strainwave.orders.mesh.harmonics import Harmonics, harmonics
+from strainwave.orders.mesh.harmonics import MAX_LOAD_SPREAD, Harmonics, check_repeats, complete_loads, harmonics
 from strainwave.presentation import Pictured, Row, counted
 
 if TYPE_CHECKING:
@@ -37,7 +37,6 @@ MAX_ERROR_ORDERS = 16  # capacity of kinematic_error.Fourier
 MAX_REPEATS = 100_000
 NAMED_DISAGREEMENT = 0.02  # relative, from which a difference is stated
 NAMED_MISFIT = 0.25  # of the amplitude of an order, by which its change with the load is missed
-NOISE_OF_ROUNDING = 1e-9  # of the largest amplitude: a smaller noise is rounding
 
 
 @dataclass(frozen=True)
@@ -46,13 +45,16 @@ class MeshOrder:
 
     Attributes:
         order: periods per turn of the wave generator [1]
-        amplitude: without load, at the output [rad]
+        amplitude: without load or at the one load chosen, at the output [rad]
+        sigma: standard deviation of it, by the noise of the solver and by what the laws leave of this order over the loads
+            [rad]; 0 if the table determines none
         phase: of it [rad], as of a sine
         share: part of all squares of the varying transmission error that this order has, mean over the loads [1]
     """
 
     order: float
     amplitude: float
+    sigma: float
     phase: float
     share: float
 
@@ -68,8 +70,7 @@ class MeshLaws(ComparedByFields, Pictured):
         mesh_stiffness: of all engaged teeth along the line of action, mean over angle and load [N/m]
         mesh_variation: relative variation of it
         orders: in the kinematic error, the strongest first
-        noise: standard deviation of an amplitude by the noise of the solver [rad]; 0 without transmission error
-        sensitivity_sigma: standard deviation of the load sensitivity by that noise [1/(N.m)]
+        sensitivity_sigma: standard deviation of the load sensitivity, likewise [1/(N.m)]
         residual: root mean square of the transmission error that the laws do not explain [rad]; 0 without it
         explained_share: of the squares of the varying transmission error [1]
         source: of the table
@@ -82,7 +83,6 @@ class MeshLaws(ComparedByFields, Pictured):
     mesh_stiffness: float | None = None
     mesh_variation: variation.Periodic | None = None
     orders: tuple[MeshOrder, ...] = ()
-    noise: float = 0.0
     sensitivity_sigma: float = 0.0
     residual: float = 0.0
     explained_share: float = 0.0
@@ -117,10 +117,9 @@ class MeshLaws(ComparedByFields, Pictured):
     def _rows(self) -> Iterator[Row]:
         for each in self.orders:
             note = f"phase {typeset.number(float(np.degrees(each.phase)), 4)}°, {typeset.percent(each.share)} of the squares"
-            yield Row(f"order {each.order:g}", each.amplitude, "rad", note=note)
+            yield Row(f"order {each.order:g}", each.amplitude, "rad", each.sigma or nan, note)
         if isinstance(self.kinematic_error, kinematic_error.Scaled):
-            sigma = self.sensitivity_sigma if self._noisy else nan
-            yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", sigma)
+            yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", self.sensitivity_sigma or nan)
         if self.stiffness is not None:
             for name, kind, unit in ((field["name"], field["kind"], field["unit"]) for field in self.stiffness.fields):
                 yield Row(f"stiffness {name}", getattr(self.stiffness, name), unit, note="" if kind == "number" else kind)
@@ -131,14 +130,7 @@ class MeshLaws(ComparedByFields, Pictured):
                 for order, amplitude in zip(law.order, law.amplitude, strict=True):
                     yield Row(f"{name.replace('_', ' ')}, order {order:g}", amplitude, "1")
         if self.orders:
-            if self._noisy:
-                yield Row("noise of an amplitude", self.noise, "rad")
             yield Row("not explained", self.residual, "rad", note="rms")
-
-    @property
-    def _noisy(self) -> bool:
-        """True if the noise of the solver is more than rounding."""
-        return self.noise > NOISE_OF_ROUNDING * max((each.amplitude for each in self.orders), default=0.0)
 
     def plot(self) -> Figure:
         """Return a figure of the amplitudes of the error without load over the order."""
@@ -152,7 +144,7 @@ class MeshLaws(ComparedByFields, Pictured):
         )
 
 
-def mesh_laws(table: MeshTable, *, repeats: int = 1, false_alarm: float = 0.01) -> MeshLaws:
+def mesh_laws(table: MeshTable, *, load: float | None = None, repeats: int = 1, false_alarm: float = 0.01) -> MeshLaws:
     """Return the laws of a gear that a table of its mesh determines.
 
     The means over the angle at two loads or more determine the spring, their orders the kinematic error. How the orders change
@@ -161,13 +153,14 @@ def mesh_laws(table: MeshTable, *, repeats: int = 1, false_alarm: float = 0.01) 
 
     Args:
         table: of at least two angles per period of an order
+        load: one of the loads of the table [N.m], at which alone the orders are fitted: for a spectrum at this load
         repeats: number of times that all repeats in a turn of the wave generator, 2 of two lobes that are alike: then the table
             needs part of a turn alone, and orders that are no multiples are 0 by this statement
         false_alarm: probability that noise makes an order
 
     Raises:
-        ValueError: the angles determine no order; the transmission error falls as the torque rises; or stiffness and slope of
-            the transmission error contradict each other
+        ValueError: the angles determine no order, or one that contradicts `repeats`; the table has no such load; the
+            transmission error falls as the torque rises, or its slope and the stiffness contradict each other
 
     >>> import numpy as np
     >>> import strainwave as sw
@@ -182,11 +175,15 @@ def mesh_laws(table: MeshTable, *, repeats: int = 1, false_alarm: float = 0.01) 
         raise TypeError(f"table must be a MeshTable, as sw.files.MeshTable.read(...) gives one, not {shortened(table)}")
     repeats = arguments.whole("repeats", repeats, 1, MAX_REPEATS)
     allowed = arguments.probability("false_alarm", false_alarm)
+    table, incomplete = _complete(table, repeats)
+    quantity = next(getattr(table, name) for name in QUANTITY_UNITS if name in table.quantities)
+    check_repeats(table.angle, table.torque, quantity, repeats)
     error, of_spring, of_mesh = (
         None if (values := getattr(table, name)) is None else harmonics(table.angle, table.torque, values, repeats)
         for name in ("transmission_error", "stiffness", "mesh_stiffness")
     )
-    remarks = next(each.remarks for each in (error, of_spring, of_mesh) if each is not None)
+    first = next(each for each in (error, of_spring, of_mesh) if each is not None)
+    loads = slice(None) if load is None else _chosen(first.torque, load)
     given, of_teeth = (
         None if found is None else StiffnessVariation.of_column(name, found, allowed)
         for name, found in (("stiffness", of_spring), ("mesh_stiffness", of_mesh))
@@ -197,22 +194,43 @@ def mesh_laws(table: MeshTable, *, repeats: int = 1, false_alarm: float = 0.01) 
         mesh_variation=None if of_teeth is None else of_teeth.law,
         source=table.source,
         remarks=(
-            *remarks,
+            *incomplete,
+            *first.remarks,
             *(remark for each in (given, of_teeth) if each is not None for remark in each.remarks),
             *_over_loads(of_mesh),
         ),
     )
     if error is None:
         return laws if of_spring is None else replace(laws, stiffness=spring_by_tangents(of_spring).law)
-    return _with_error(laws, table, error, of_spring, error_fit(error, of_spring, given, allowed))
+    fit = error_fit(error, of_spring, given, loads, allowed)
+    return _with_error(laws, table, error, loads, fit, tuple(_remarks(fit, error, of_spring)))
+
+
+def _complete(table: MeshTable, repeats: int) -> tuple[MeshTable, tuple[str, ...]]:
+    """Return a table without loads of which angles are missing, and remarks on them."""
+    rows, remarks = complete_loads(table.angle, table.torque, repeats)
+    if rows.all():
+        return table, ()
+    return replace(table, **{name: getattr(table, name)[rows] for name in ("angle", "torque", *table.quantities)}), remarks
+
+
+def _chosen(torque: Array, load: float) -> slice:
+    """Return the place of a load."""
+    wanted = arguments.number("load", load, "N.m")
+    place = int(np.argmin(np.abs(torque - wanted)))
+    if abs(torque[place] - wanted) > MAX_LOAD_SPREAD * float(np.abs(torque).max()):
+        raise ValueError(f"load is {wanted:g} N.m; the table has {listed(f'{each:g}' for each in torque.tolist())} N.m")
+    return slice(place, place + 1)
 
 
 # ---- Laws and remarks ------------------------------------------------------------------------------------------------
 
 
-def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, of_spring: Harmonics | None, fit: ErrorFit) -> MeshLaws:
+def _with_error(
+    laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice, fit: ErrorFit, remarks: tuple[str, ...]
+) -> MeshLaws:
     """Return the laws with those of the transmission error."""
-    orders, left_out = _orders(error, fit)
+    orders, left_out = _orders(error, loads, fit)
     ordered = sorted(orders, key=lambda each: each.order)
     law: Any = kinematic_error.Fourier(
         order=[each.order for each in ordered],
@@ -220,34 +238,37 @@ def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, of_spring: H
         phase=[each.phase for each in ordered],
     )
     load = np.searchsorted(0.5 * (error.torque[1:] + error.torque[:-1]), table.torque)
+    rows = np.isin(load, np.arange(len(error.torque))[loads])
     varying = np.asarray(table.transmission_error) - error.mean[load]
     left = varying - _predicted(table, law, fit)
     left = left - (np.bincount(load, left) / np.bincount(load))[load]
-    squares, rest = float(np.mean(varying**2)), float(np.mean(left**2))
+    squares, rest = float(np.mean(varying[rows] ** 2)), float(np.mean(left[rows] ** 2))
     return replace(
         laws,
-        kinematic_error=law if fit.sensitivity == 0.0 else kinematic_error.Scaled(law=law, load_sensitivity=fit.sensitivity),
+        kinematic_error=law
+        if fit.orders.sensitivity == 0.0
+        else kinematic_error.Scaled(law=law, load_sensitivity=fit.orders.sensitivity),
         stiffness=None if fit.spring is None else fit.spring.law,
         stiffness_variation=fit.variation.law,
         orders=orders,
-        noise=fit.noise,
-        sensitivity_sigma=fit.sensitivity_sigma,
+        sensitivity_sigma=fit.orders.sensitivity_sigma,
         residual=float(np.sqrt(rest)),
         explained_share=1.0 - rest / squares if squares > 0.0 else 0.0,
-        remarks=(*laws.remarks, *_remarks(fit, error, of_spring), *left_out),
+        remarks=(*laws.remarks, *remarks, *left_out),
     )
 
 
-def _orders(error: Harmonics, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], list[str]]:
+def _orders(error: Harmonics, loads: slice, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], list[str]]:
     """Return the orders of the error, the strongest first, and what is left out."""
-    power = np.mean(np.abs(error.waves) ** 2, axis=0)
-    present = np.flatnonzero(fit.error)
-    strongest = present[np.argsort(-np.abs(fit.error[present]), kind="stable")]
+    power = np.mean(np.abs(error.waves[loads]) ** 2, axis=0)
+    present = np.flatnonzero(fit.orders.error)
+    strongest = present[np.argsort(-np.abs(fit.orders.error[present]), kind="stable")]
     orders = tuple(
         MeshOrder(
             float(error.orders[each]),
-            float(abs(fit.error[each])),
-            float(np.angle(fit.error[each])),
+            float(abs(fit.orders.error[each])),
+            float(fit.orders.sigma[each]),
+            float(np.angle(fit.orders.error[each])),
             float(power[each] / power.sum()),
         )
         for each in strongest[:MAX_ERROR_ORDERS].tolist()
@@ -255,7 +276,7 @@ def _orders(error: Harmonics, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], lis
     rest = np.sort(strongest[MAX_ERROR_ORDERS:])
     if not len(rest):
         return orders, []
-    size = typeset.quantity(float(np.abs(fit.error[rest]).max()), "rad")
+    size = typeset.quantity(float(np.abs(fit.orders.error[rest]).max()), "rad")
     return orders, [f"a law has {MAX_ERROR_ORDERS} orders; {counted(len(rest), 'order')} of up to {size} left out"]
 
 
@@ -263,9 +284,9 @@ def _predicted(table: MeshTable, law: Any, fit: ErrorFit) -> Array:
     """Return the transmission error of the laws [rad], shape (n,)."""
     error = np.asarray(law.error(table.angle))
     if fit.spring is None:
-        return np.asarray(error / (1.0 + fit.sensitivity * np.abs(table.torque)) ** 2)
+        return np.asarray(error / (1.0 + fit.orders.sensitivity * np.abs(table.torque)) ** 2)
     factor = np.ones(len(error)) if fit.variation.law is None else np.asarray(fit.variation.law.factor(table.angle))
-    return transmission_error(fit.spring.law, error, fit.sensitivity, factor, table.torque)
+    return transmission_error(fit.spring.law, error, fit.orders.sensitivity, factor, table.torque)
 
 
 def _over_loads(of_mesh: Harmonics | None) -> Iterator[str]:
@@ -282,7 +303,7 @@ def _remarks(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> It
     """Yield all remarks on the fit of the transmission error."""
     yield from _of_spring(fit, error)
     yield from _of_slope(fit, error, of_spring)
-    yield from fit.remarks
+    yield from fit.orders.remarks
     yield from _of_orders(error, fit)
     yield from _of_noise(error, fit)
 
@@ -318,18 +339,16 @@ def _of_slope(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> I
 
 def _of_orders(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     """Yield a remark on orders that change with the load in another way than all together."""
-    missed = error.orders[(np.abs(fit.error) > 0.0) & (fit.misfit > NAMED_MISFIT * np.abs(fit.error))]
+    missed = error.orders[(np.abs(fit.orders.error) > 0.0) & (fit.orders.misfit > NAMED_MISFIT * np.abs(fit.orders.error))]
     if len(missed):
         names = listed(f"{order:g}" for order in missed.tolist())
         missing = f"it misses that of order {names} by a quarter of the amplitude or more"
-        yield f"the fall is one number for all orders; {missing}: for a spectrum at one load give the rows of that load alone"
+        yield f"the fall is one number for all orders; {missing}: for a spectrum at one load choose it by load="
 
 
 def _of_noise(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
     """Yield a remark on orders that the noise of the solver hides."""
-    left = len(error.orders) - int(np.count_nonzero(fit.error))
-    if left and fit.noise > NOISE_OF_ROUNDING * float(np.abs(error.waves).max()):
-        yield (
-            f"{counted(left, 'order')} of {len(error.orders)} cannot be told from the noise of the solver, "
-            f"{typeset.quantity(fit.noise, 'rad')} of amplitude, and left out"
-        )
+    left = len(error.orders) - int(np.count_nonzero(fit.orders.error))
+    if left and error.noise > 0.0:
+        hidden = f"{counted(left, 'order')} of {len(error.orders)} are within the noise of the solver"
+        yield f"{hidden}, {typeset.quantity(error.noise, 'rad')} of amplitude at a load, and left out"

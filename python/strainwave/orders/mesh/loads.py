@@ -7,13 +7,13 @@ compliance at the load,
 
 The square is that of an error that falls by r = 1 / (1 + kappa_T |T|) and conserves energy (kinematic_error.Scaled): as the
 error falls with the torque of the spring, the spring bears T (1 + k e dr/dT) under a load T, with k its stiffness. To the first
-order the transmission error is then e (r + T dr/dT) + T / k. The first term of the sum is even in the torque. At loads
-of one sign both terms differ in their curvature alone.
+order the transmission error is then e (r + T dr/dT) + T / k. The first term of the sum is even in the torque, the second one
+odd if the spring is: loads of both signs separate them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
@@ -31,14 +31,14 @@ Complex = NDArray[np.complex128]
 
 MAX_BEND = 0.002  # of the largest twist: a spring whose twist is off by less in the root mean square is straight enough
 MAX_KNEE_LEVELS = 30  # loads that knees are looked for at
-MIN_LOADS = 3  # that determine a change with the load, and test its form
+MIN_LOADS = 3  # that determine a change with the load
 RELATIVE_NOISE = 1e-3  # of the largest amplitude: a solver is not believed to be more exact (assumed)
-MAX_FALL = 100.0  # of the error over what is left at the largest load
+MIN_FALL, MAX_FALL = 1e-4, 100.0  # of the error at the largest load over what is left there, between which it is looked for
 SEARCH_POINTS = 60
-MAX_MISFIT = 2.0  # times the noise, that a model may leave where curvature alone separates its terms
+NOISE_QUANTILE = 0.25  # of what a model leaves of the orders: most of them may have a misfit
+MAX_STEPS = 30  # of Gauss and Newton, from the best of these points
+MAX_LEFT_BY_FALL = 0.5  # of the squares without it, by a fall in the model: orders that fall each by its own rate have none
 NAMED_MISFIT = 5.0  # times the noise, from which what a model leaves is stated
-MAX_RELATIVE_SIGMA = 0.1  # of what curvature alone determines, over its value
-MIN_EVIDENCE = 10.0  # difference of the Bayesian information criterion (Schwarz 1978) from which a model is preferred
 
 
 # ---- Spring ----------------------------------------------------------------------------------------------------------
@@ -123,37 +123,55 @@ class LoadFit:
 
     Attributes:
         error: complex amplitudes of the error without load [rad], shape (h,)
+        sigma: standard deviation of each, by noise and by what the model leaves of it over the loads [rad], shape (h,)
         variation: complex amplitudes of the relative variation of the stiffness [1], shape (h,); zeros if none is determined
         sensitivity, sensitivity_sigma: relative fall of the error with the torque [1/(N.m)], and its standard deviation
-        sigma: standard deviation of an amplitude of the error over that of a wave of one load
         misfit: root mean square over the loads of what the model leaves of each order [rad], shape (h,)
         remarks: in words
     """
 
     error: Complex
+    sigma: Array
     variation: Complex
     sensitivity: float
     sensitivity_sigma: float
-    sigma: float
     misfit: Array
     remarks: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class _Model:
-    """A model of the change with the load: its coefficients, and its information criterion."""
+    """A model of the change with the load, by its columns over the loads, and its coefficients of each order."""
 
     falls: bool
-    varies: bool
     sensitivity: float
-    coefficients: Complex
-    criterion: float
     columns: Array
-    squares: float
+    coefficients: Complex
+    left: Complex
 
-    def rms(self, cells: int) -> float:
-        """Root mean square of the complex amplitudes that it leaves, of that many."""
-        return float(np.sqrt(self.squares / cells))
+    @property
+    def orders(self) -> int:
+        """Number of orders that are not left out."""
+        return int(np.count_nonzero(self.coefficients[0]))
+
+    @property
+    def squares(self) -> float:
+        """Sum of the squares that it leaves."""
+        return float(np.sum(np.abs(self.left) ** 2))
+
+    @property
+    def unknowns(self) -> int:
+        """Number of its real unknowns."""
+        return 2 * len(self.coefficients) * self.orders + self.falls
+
+    @property
+    def data(self) -> int:
+        """Number of real numbers that it is fitted to."""
+        return 2 * len(self.left) * self.orders
+
+    def criterion(self, noise: float) -> float:
+        """Bayesian information criterion (Schwarz 1978)."""
+        return 2.0 * self.squares / noise**2 + self.unknowns * float(np.log(self.data))
 
     def slope(self, torque: Array) -> tuple[Complex, Complex]:
         """Return the change of the waves with the sensitivity: what the coefficients make up of it, and what they do not."""
@@ -162,15 +180,24 @@ class _Model:
         made_up = solved(self.columns, slope)
         return made_up, slope - self.columns @ made_up
 
+    def scatter(self, noise: float) -> Array:
+        """Return the standard deviation of a wave, by noise or by what the model leaves of its order [rad], shape (h,)."""
+        per_freedom = self.data / max(self.data - self.unknowns, 1)  # one load leaves nothing
+        of_order = np.sqrt(per_freedom * np.mean(np.abs(self.left) ** 2, axis=0))
+        # A fall in common takes the noise out of one order; it is in all, so a lower one of them shows it.
+        level = float(np.quantile(of_order[self.coefficients[0] != 0.0], NOISE_QUANTILE, method="lower"))
+        return np.asarray(np.maximum(max(noise, level), of_order))
+
     def sigmas(self, torque: Array, noise: float) -> tuple[float, Array]:
-        """Return the standard deviation of the sensitivity [1/(N.m)], and that of the last coefficient of each order, (h,)."""
-        inverse = np.linalg.inv(self.columns.T @ self.columns)
-        of_order = np.full(self.coefficients.shape[1], noise * float(np.sqrt(inverse[-1, -1])))
+        """Return the standard deviations of the sensitivity [1/(N.m)] and of the coefficients, shape (p, h)."""
+        scatter = self.scatter(noise)
+        of_orders = np.outer(np.sqrt(np.diag(np.linalg.inv(self.columns.T @ self.columns))), scatter)
         if not self.falls:
-            return 0.0, of_order
+            return 0.0, of_orders
         made_up, own = self.slope(torque)
-        of_fall = noise / float(np.sqrt(2.0 * np.sum(np.abs(own) ** 2)))
-        return of_fall, np.hypot(of_order, of_fall * np.abs(made_up[-1]))
+        information = np.sum(np.abs(own) ** 2, axis=0)
+        of_fall = float(np.sqrt(0.5 * np.sum(scatter**2 * information)) / information.sum())
+        return of_fall, np.hypot(of_orders, of_fall * np.abs(made_up))
 
 
 def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: float) -> LoadFit:
@@ -179,51 +206,41 @@ def load_fit(torque: Array, compliance: Array | None, waves: Complex, noise: flo
     Args:
         torque: of the loads [N.m], shape (m,)
         compliance: at each load [rad/(N.m)], shape (m,); None if the variation of the stiffness is no unknown
-        waves: complex amplitudes [rad], shape (m, h)
-        noise: standard deviation of a complex amplitude [rad]
+        waves: complex amplitudes [rad], shape (m, h); 0 of orders left out
+        noise: standard deviation of a complex amplitude by the noise of the solver [rad]
     """
-    if not waves.shape[1]:
-        none = np.zeros(0, complex)
-        return LoadFit(none, none, 0.0, 0.0, 1.0, np.zeros(0), ())
-    of_solver, noise = noise, max(noise, RELATIVE_NOISE * float(np.abs(waves).max(initial=0.0)), 1e-300)
+    none = np.zeros(waves.shape[1])
+    if not waves.any():
+        return LoadFit(none.astype(complex), none, none.astype(complex), 0.0, 0.0, none, ())
+    believed = max(noise, RELATIVE_NOISE * float(np.abs(waves).max()), 1e-300)
     varying = None if compliance is None else -torque * compliance
-    models = [_model(torque, None, waves, noise, falls=False)]
+    constant = _model(torque, None, waves, falls=False)
+    models = [constant]
     if len(torque) >= MIN_LOADS:
-        models += [_model(torque, each, waves, noise, falls=falls) for falls, each in _choices(torque, varying)]
-    chosen = min(models, key=lambda each: each.criterion)
+        models += [_model(torque, each, waves, falls=falls) for falls, each in _choices(torque, varying)]
+    chosen = min(models, key=lambda each: each.criterion(believed))
+    without_fall = min((each for each in models if not each.falls), key=lambda each: each.criterion(believed))
+    if chosen.squares > MAX_LEFT_BY_FALL * without_fall.squares:
+        chosen = without_fall
     remarks: tuple[str, ...] = ()
     if len(torque) < MIN_LOADS:
         remarks = (_few_loads(torque, waves),)
-    elif chosen is not models[0] and not _separates(chosen, models, torque, noise, of_solver):
-        chosen, remarks = models[0], (_not_separable(torque, waves),)
-    elif (left := chosen.rms(waves.size)) > NAMED_MISFIT * noise:
-        remarks = (
-            f"{_change(torque, waves)}; {quantity(left, 'rad')} of it (rms) is no fall and no variation as the laws have it",
-        )
-    variation = chosen.coefficients[1] if chosen.varies else np.zeros(waves.shape[1], complex)
-    inverse = np.linalg.inv(chosen.columns.T @ chosen.columns)
-    of_fall, of_orders = chosen.sigmas(torque, of_solver)
-    variation = np.where(np.abs(variation) > SIGNIFICANCE_SIGMA * of_orders, variation, 0.0)
-    misfit = np.sqrt(np.mean(np.abs(waves - chosen.columns @ chosen.coefficients) ** 2, axis=0))
-    sigma = float(np.sqrt(inverse[0, 0]))
-    return LoadFit(chosen.coefficients[0], variation, chosen.sensitivity, of_fall, sigma, misfit, remarks)
-
-
-def _separates(chosen: _Model, models: Sequence[_Model], torque: Array, noise: float, of_solver: float) -> bool:
-    """True if the loads separate a fall of the error from a variation of the stiffness.
-
-    Loads of both signs do, as one is even and the other odd. Of one sign the curvature alone does: then the model must explain
-    the orders within the noise, the opposite one must not, and what it determines must be larger than its standard deviation.
-    """
-    if not any(each.varies for each in models) or torque.min() < 0.0 < torque.max():
-        return True
-    opposite = [each for each in models if (each.falls, each.varies) == (chosen.varies, chosen.falls) and each is not chosen]
-    is_clear = all(each.criterion - chosen.criterion > MIN_EVIDENCE for each in opposite)
-    of_fall, of_orders = chosen.sigmas(torque, of_solver)
-    largest = int(np.argmax(np.abs(chosen.coefficients[-1])))
-    known = not chosen.falls or of_fall < MAX_RELATIVE_SIGMA * chosen.sensitivity
-    known &= not chosen.varies or bool(of_orders[largest] < MAX_RELATIVE_SIGMA * abs(chosen.coefficients[-1, largest]))
-    return is_clear and known and chosen.rms(len(torque) * len(of_orders)) < MAX_MISFIT * noise
+    elif chosen is not constant and varying is not None and not torque.min() < 0.0 < torque.max():
+        chosen, remarks = constant, (_not_separable(torque, waves),)
+    elif (left := float(np.sqrt(2.0 * chosen.squares / chosen.data))) > NAMED_MISFIT * believed:
+        no_law = f"{quantity(left, 'rad')} of it (rms) is no fall and no variation as the laws have it"
+        remarks = (f"{_change(torque, waves)}; {no_law}",)
+    elif chosen.falls and len(np.unique(np.abs(torque))) == 2:
+        remarks = (f"between 0 and {np.abs(torque).max():g} N.m the form of the fall is not tested; add loads between",)
+    of_fall, of_orders = chosen.sigmas(torque, noise)
+    misfit = np.sqrt(np.mean(np.abs(chosen.left) ** 2, axis=0))
+    sigma = np.hypot(of_orders[0], np.sqrt(np.maximum(misfit**2 - noise**2, 0.0)))  # no number of loads averages a misfit out
+    variation = none.astype(complex)
+    if len(chosen.coefficients) > 1:
+        # Products of error and variation are in other orders: what is left of one order may be in another one as a variation.
+        least = SIGNIFICANCE_SIGMA * float(of_orders[1].max())
+        variation = np.where(np.abs(chosen.coefficients[1]) > least, chosen.coefficients[1], 0.0)
+    return LoadFit(chosen.coefficients[0], sigma, variation, chosen.sensitivity, of_fall, misfit, remarks)
 
 
 def _choices(torque: Array, varying: Array | None) -> Iterator[tuple[bool, Array | None]]:
@@ -237,40 +254,27 @@ def _choices(torque: Array, varying: Array | None) -> Iterator[tuple[bool, Array
             yield True, varying
 
 
-def _model(torque: Array, varying: Array | None, waves: Complex, noise: float, *, falls: bool) -> _Model:
-    """Return the model of largest likelihood."""
+def _model(torque: Array, varying: Array | None, waves: Complex, *, falls: bool) -> _Model:
+    """Return the model of least squares."""
     others = [] if varying is None else [varying]
 
-    def solution(sensitivity: float) -> tuple[float, Array, Complex]:
-        columns = np.column_stack([(1.0 + sensitivity * np.abs(torque)) ** -2.0, *others])
-        coefficients = solved(columns, waves)
-        return float(np.sum(np.abs(waves - columns @ coefficients) ** 2)), columns, coefficients
-
     def model(sensitivity: float) -> _Model:
-        squares, columns, coefficients = solution(sensitivity)
-        unknowns = 2 * waves.shape[1] * columns.shape[1] + falls
-        criterion = 2.0 * squares / noise**2 + unknowns * float(np.log(2.0 * waves.size))
-        return _Model(falls, varying is not None, sensitivity, np.atleast_2d(coefficients), criterion, columns, squares)
+        columns = np.column_stack([(1.0 + sensitivity * np.abs(torque)) ** -2.0, *others])
+        coefficients = np.atleast_2d(solved(columns, waves))
+        return _Model(falls, sensitivity, columns, coefficients, waves - columns @ coefficients)
 
     if not falls:
         return model(0.0)
-    nearly = model(_least(lambda each: solution(each)[0], float(np.abs(torque).max())))
-    _, own = nearly.slope(torque)  # a step of Newton's method, as the search is exact to the root of rounding alone
-    left = waves - nearly.columns @ nearly.coefficients
-    step = float(np.sum((own.conj() * left).real) / np.sum(np.abs(own) ** 2))
-    return min(nearly, model(max(nearly.sensitivity + step, 0.0)), key=lambda each: each.squares)
-
-
-def _least(squares: Callable[[float], float], largest: float) -> float:
-    """Return the sensitivity of least squares [1/(N.m)]."""
-    from scipy.optimize import minimize_scalar
-
-    tried = np.geomspace(1e-4, MAX_FALL, SEARCH_POINTS) / largest
-    values = [squares(each) for each in tried.tolist()]
-    place = int(np.argmin(values))
-    ends = float(np.log(tried[max(place - 1, 0)])), float(np.log(tried[min(place + 1, len(tried) - 1)]))
-    best = minimize_scalar(lambda each: squares(float(np.exp(each))), bounds=ends, method="bounded", options={"xatol": 1e-10})
-    return float(np.exp(best.x))
+    starts = np.geomspace(MIN_FALL, MAX_FALL, SEARCH_POINTS) / float(np.abs(torque).max())
+    best = min(map(model, starts.tolist()), key=lambda each: each.squares)
+    for _ in range(MAX_STEPS):
+        _, own = best.slope(torque)
+        step = float(np.sum((own.conj() * best.left).real) / np.sum(np.abs(own) ** 2))
+        better = model(max(best.sensitivity + step, 0.0))
+        if not better.squares < best.squares:
+            break
+        best = better
+    return best
 
 
 def _few_loads(torque: Array, waves: Complex) -> str:
@@ -278,14 +282,13 @@ def _few_loads(torque: Array, waves: Complex) -> str:
         where = f"at one load, {torque[0]:g} N.m"
         return f"{where}, the change of the error with the load is not determined: it is constant in the model"
     alone = "two loads do not separate a fall of the error from a variation of the stiffness"
-    return f"{_change(torque, waves)}; {alone}: neither is in the model; add a load"
+    return f"{_change(torque, waves)}; {alone}: neither is in the model; add a load, or choose one by load="
 
 
 def _not_separable(torque: Array, waves: Complex) -> str:
-    add = "loads of the other sign" if torque.min() >= 0.0 or torque.max() <= 0.0 else "further loads"
     return (
         f"{_change(torque, waves)}; a fall of the error and a variation of the stiffness are not separable in it: "
-        f"neither is in the model; add {add}, or the column stiffness"
+        "neither is in the model; add loads of the other sign or the column stiffness, or choose one load by load="
     )
 
 

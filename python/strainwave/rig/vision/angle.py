@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from strainwave.equality import ComparedByFields
 from strainwave.messages import quoted, shortened
-from strainwave.presentation import Presented
+from strainwave.presentation import Presented, counted
 from strainwave.progress import Progress, in_turn
 from strainwave.rig.bench.setup import Camera
 from strainwave.rig.vision.camera import PERFECT, changes_nothing, flat, slopes_at
@@ -72,6 +72,7 @@ def measure_angles(
 
     Raises:
         OSError: there is no such folder or video
+        TypeError: images are neither files nor pictures, or pixels are of another type than uint8 and uint16
         ValueError: no image gives an angle; the reference is none of them, or gives none; a number is out of its range
         ImportError: a video, and opencv is not installed
 
@@ -105,6 +106,10 @@ def _sources(images: Source | Iterable[Source | NDArray[Any]]) -> Iterator[Sourc
             raise FileNotFoundError(f"{quoted(str(path))} is no file or folder")
         else:
             yield path
+    elif not isinstance(images, Iterable):
+        raise TypeError(f"images must be a file, a folder, or pictures one after the other, not {shortened(images)}")
+    elif isinstance(images, np.ndarray) and (images.ndim < 3 or images.shape[2:] == (3,)):
+        raise ValueError(f"images is one array of shape {images.shape}; give a list of pictures, as [first, second]")
     else:
         for number, each in enumerate(images, 1):
             if isinstance(each, np.ndarray):
@@ -181,16 +186,17 @@ def follow(
     apart = (
         min(abs(sight.difference) for sight in sights) > _MAX_RELATIVE_DIFFERENCE
     )  # the radii distinguish them in every image
-    angle = np.zeros(len(useful))
+    angle, steps = np.zeros(len(useful)), np.zeros(len(useful))
     for k, i in enumerate(useful):
-        swapped, step = _step(sights[k - 1] if k else None, sights[k], apart)
+        swapped, steps[k] = _step(sights[k - 1] if k else None, sights[k], apart)
         if swapped:
             sights[k] = sights[k].swapped()
-        angle[k] = angle[k - 1] + step if k else 0.0
-        ordered = (sights[k].markers[0], sights[k].markers[1])
-        frames[i] = replace(
-            frames[i], markers=ordered, warnings=frames[i].warnings + _uncertain(step, apart, frames[useful[k - 1]].name)
-        )
+        angle[k] = angle[k - 1] + steps[k] if k else 0.0
+        frames[i] = replace(frames[i], markers=(sights[k].markers[0], sights[k].markers[1]))
+    remarks = list[str]()
+    for i, uncertain in _uncertain_steps(steps, useful, apart, [frame.name for frame in frames]):
+        frames[i] = replace(frames[i], warnings=(*frames[i].warnings, uncertain))
+        remarks.append(f"{quoted(frames[i].name)} and the images after it: {uncertain}")
     for i, unlike in zip(useful, _unlike(sights), strict=True):
         frames[i] = replace(frames[i], warnings=frames[i].warnings + unlike)
     angle -= angle[zero]
@@ -198,7 +204,7 @@ def follow(
     shape, shape_sigma = _squeezed(sights)
     return Angles(
         tuple(frames), angle, sigma, frames[useful[zero]].name, float(np.hypot(abs(shape) / 2.0**0.5, shape_sigma)),
-        _centre(sights, angle), _askew(sights),
+        _centre(sights, angle), (*_askew(sights), *remarks),
     )  # fmt: skip
 
 
@@ -259,14 +265,22 @@ def _step(before: _Sight | None, now: _Sight, apart: bool) -> tuple[bool, float]
     return swapped, float(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b))
 
 
-def _uncertain(step: float, apart: bool, before: str) -> tuple[str, ...]:
+def _uncertain_steps(steps: Array, useful: Sequence[int], apart: bool, names: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Yield images, by their places, whose turn since the one before with an angle is ambiguous, and why.
+
+    Over images without an angle the turn may be the largest one between neighbours for each of them.
+    """
     limit, why = (180.0, "the direction") if apart else (90.0, "which of two like markers is which")
-    degrees = abs(np.degrees(step))
-    if degrees < limit - _HALF_TURN_MARGIN:
-        return ()
-    return (
-        f"turned by {degrees:.1f} degrees since {quoted(before)}, or more: beyond {limit:g} degrees {why} cannot be determined",
-    )
+    turns, gaps = np.abs(np.degrees(steps[1:])), np.diff(useful)
+    usual = turns[gaps == 1].max(initial=0.0) if np.any(gaps == 1) else limit
+    for k, (turn, gap) in enumerate(zip(turns, gaps, strict=True)):
+        if max(turn, gap * usual if gap > 1 else 0.0) >= limit - _HALF_TURN_MARGIN:
+            over = f" over {counted(int(gap) - 1, 'image')} without an angle" if gap > 1 else ""
+            yield (
+                useful[k + 1],
+                f"turned by {turn:.1f} degrees since {quoted(names[useful[k]])}{over}, or more: beyond {limit:g} degrees {why} "
+                "cannot be determined",
+            )
 
 
 def _of_one_target(frames: list[Frame], camera: Camera) -> list[Frame]:

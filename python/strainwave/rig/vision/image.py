@@ -222,9 +222,11 @@ def as_image(name: str, pixels: NDArray[Any]) -> Image:
     """
     array = np.asarray(pixels)
     if array.dtype not in (np.uint8, np.uint16):
-        raise TypeError(f"{name}: pixels must be uint8 or uint16, not {array.dtype}")
+        remedy = "; of pixels from 0 to 1 give (255 * pixels).astype(np.uint8)" if array.dtype.kind == "f" else ""
+        raise TypeError(f"{name}: pixels must be uint8 or uint16, not {array.dtype}{remedy}")
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[2] != 3):
-        raise ValueError(f"{name}: pixels have shape {array.shape}; must be (height, width) or (height, width, 3)")
+        remedy = "; leave out the opacity, as pixels[..., :3]" if array.ndim == 3 and array.shape[2] == 4 else ""
+        raise ValueError(f"{name}: pixels have shape {array.shape}; must be (height, width) or (height, width, 3){remedy}")
     try:
         check_size(array.shape[1], array.shape[0])
     except RefusedFile as error:

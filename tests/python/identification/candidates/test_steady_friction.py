@@ -117,6 +117,19 @@ def test_motion_both_ways_separates_gravity_from_friction_over_the_angle(seed: i
         assert abs(law[path].value - truth) < 3.5 * law[path].sigma < 0.1 * abs(truth)
 
 
+@pytest.mark.parametrize("rows", [200, 300, 400])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_load_twice_a_turn_is_not_taken_for_gravity(rows: int, seed: int) -> None:
+    """Of the joint, over 1 to 2 rad: one wave explains most of it, with 12 to 13 N.m that are not there."""
+    speeds = np.array([20.0, -20.0])
+    stretches = [
+        ((torque + 0.04 * np.sin(2.0 * angle / 100.0))[angle <= 0.5 * rows], angle[angle <= 0.5 * rows])
+        for torque, angle in over_200_rad(speeds.tolist(), 0.0, seed)
+    ]
+    levels = levels_of([each for each, _ in stretches], [angle / 100.0 for _, angle in stretches], speeds)
+    assert levels.gravity_sigma is None
+
+
 @pytest.mark.parametrize("ways", [(1.0,), (1.0, -1.0)])
 def test_a_table_over_the_angle_has_gravity_at_the_output_if_it_goes_both_ways(ways: tuple[float, ...], tmp_path: Path) -> None:
     speeds = [2.0 * way for way in ways]

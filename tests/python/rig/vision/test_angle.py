@@ -75,6 +75,30 @@ def test_turns_are_followed_through_more_than_a_revolution_and_back(radii: tuple
     assert not any(frame.warnings for frame in angles.frames)
 
 
+def test_a_turn_over_an_image_without_an_angle_is_doubtful_if_it_may_be_a_wide_one() -> None:
+    none = Frame("no.png", "", None, size=(640, 480), fault="no marker")
+    wide = follow([sight(0.0, "0"), none, sight(np.radians(110.0), "110")])
+    assert 'turned by 70.0 degrees since "0" over 1 image without an angle, or more' in wide.remarks[0]
+    assert wide.remarks[0].startswith('"110" and the images after it: ')
+    by_steps = follow([sight(0.0, "0"), sight(np.radians(50.0), "50"), none, sight(np.radians(150.0), "150")])
+    assert [bool(frame.warnings) for frame in by_steps.frames] == [False, False, False, True]
+    small_steps = follow([sight(0.0, "0"), sight(np.radians(20.0), "20"), none, sight(np.radians(60.0), "60")])
+    assert small_steps.remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("images", "error", "message"),
+    [
+        (None, TypeError, "images must be a file, a folder, or pictures one after the other, not None"),
+        (np.zeros((240, 320), np.uint8), ValueError, r"images is one array of shape \(240, 320\); give a list of pictures"),
+        (np.zeros((240, 320, 3), np.uint8), ValueError, r"images is one array of shape \(240, 320, 3\)"),
+    ],
+)
+def test_what_is_no_sequence_of_pictures_is_refused(images: Any, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        measure_angles(images)
+
+
 def test_markers_are_listed_in_the_same_order_in_all_images() -> None:
     degrees = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0]
     for radii in ((20.0, 20.0), (16.0, 20.0)):

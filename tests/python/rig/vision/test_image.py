@@ -185,6 +185,10 @@ def test_an_array_is_an_image_if_it_is_of_whole_numbers() -> None:
     assert as_image("a", RAMP) == as_image("a", RAMP)
     with pytest.raises(TypeError, match="pixels must be uint8 or uint16, not float64"):
         as_image("a", RAMP / 255.0)
+    with pytest.raises(TypeError, match=r"give \(255 \* pixels\).astype\(np.uint8\)"):
+        as_image("a", RAMP / 255.0)
+    with pytest.raises(ValueError, match="leave out the opacity"):
+        as_image("a", np.dstack([RAMP] * 4))
     with pytest.raises(ValueError, match=r"pixels have shape \(24, 32, 2\)"):
         as_image("a", np.dstack([RAMP] * 2))
     with pytest.raises(ValueError, match="has 4 x 24 pixels"):

@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 
 from strainwave import arguments
 from strainwave._core import Gear
+from strainwave.analysis.torsion_loop import series_compliance
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.steady_shapes import MIN_TEMPERATURE_SPAN
@@ -261,6 +262,7 @@ class FurtherLoops(ComparedByFields):
 
     Attributes:
         shares: result of the loops that were measured
+        sources: names of the sources, whose shares are the first unknowns; those of loops at the input, too
         covariance: of the unknowns by these, shape (p, p), infinite in no direction
         floors: standard deviation of each share that no loop reduces, as real widths depart from the forms
         loops: that could be measured
@@ -269,6 +271,7 @@ class FurtherLoops(ComparedByFields):
     """
 
     shares: LossShares
+    sources: tuple[str, ...]
     covariance: Array
     floors: Array
     loops: tuple[LossLoop, ...]
@@ -278,17 +281,37 @@ class FurtherLoops(ComparedByFields):
 
 def further_loops(loops: Sequence[Recording], gear: Gear) -> FurtherLoops:
     """Return the loops that could be measured after those of `loss_shares`, whose arguments and errors these are."""
-    fit, shifts = _of_recordings(loops, gear)
+    measured, shifts = _of_recordings(loops, gear)
+    shares = _shares(measured, shifts)
+    fit = measured
+    if not any(each.ratio for each in measured.loops) and series_compliance(gear) == 0.0:
+        fit = _with_bearing(measured, abs(gear.kinematics.ratio))
     total = float(fit.unit_loss @ fit.amplitudes)
     into = _unknowns(fit, total)
-    options, back = [*_planned(fit)], np.linalg.inv(into)
+    options, back = [*_planned(fit, abs(gear.kinematics.ratio))], np.linalg.inv(into)
     information = np.stack([back.T @ rows.T @ rows @ back for _, rows in options])
     covariance = into @ fit.covariance @ into.T
     floor = float(np.hypot(SHAPE_SIGMA, fit.misfit))
-    by_noise = np.sqrt(np.diag(covariance)[: len(fit.widths.sources)]) > MAX_SHARE_SIGMA
+    count = len(fit.widths.sources) - shifts.shape[1]  # of sources that were not measured: those of the bearing
+    by_noise = np.sqrt(np.diag(covariance)[count : len(fit.widths.sources)]) > MAX_SHARE_SIGMA
     floors = np.where(by_noise, floor, np.hypot(floor, np.abs(shifts).max(axis=0)))
+    floors = np.append(floors[:count], floors)  # the bearing has the forms of the friction of the gear, which comes next
     planned = tuple(loop for loop, _ in options)
-    return FurtherLoops(_shares(fit, shifts), covariance, floors, planned, information, fit.widths.reference_temperature)
+    names = tuple(source.name for source in fit.widths.sources)
+    return FurtherLoops(shares, names, covariance, floors, planned, information, fit.widths.reference_temperature)
+
+
+def _with_bearing(fit: _Fit, ratio: float) -> _Fit:
+    """Return the fit of loops at the output with the sources of loops at the input, of which nothing but the prior is known."""
+    possible = _possible(has_input=True, timed=fit.loops[fit.largest].is_timed)
+    model = replace(fit.widths, sources=[*(each for each in possible if each not in fit.widths.sources), *fit.widths.sources])
+    unit_loss = _cycle(replace(fit.loops[fit.largest], ratio=ratio), fit.curves[fit.largest], model)
+    count = len(unit_loss) - len(fit.unit_loss)  # SOURCES begins with the bearing
+    covariance = np.pad(fit.covariance, ((count, 0), (count, 0)))
+    prior = PRIOR_SHARE_SIGMA * (fit.unit_loss @ fit.amplitudes) / unit_loss[:count]
+    covariance[:count, :count] = np.diag(prior**2)
+    amplitudes = np.append(np.zeros(count), fit.amplitudes)
+    return replace(fit, widths=model, amplitudes=amplitudes, covariance=covariance, unit_loss=unit_loss)
 
 
 def _unknowns(fit: _Fit, total: float) -> Array:
@@ -516,11 +539,7 @@ def _largest(loops: Sequence[LossLoop], curves: Sequence[_Curve]) -> int:
 def _model_of(loops: Sequence[LossLoop], largest: int, *, relaxing: bool) -> _Widths:
     """Return the sources that loops may contain, referred to the largest, and the lubricants whose fall they show."""
     has_input, timed = any(loop.ratio for loop in loops), all(loop.is_timed for loop in loops)
-    sources = [
-        each
-        for each in SOURCES
-        if (has_input or not each.name.startswith("bearing")) and (timed or not each.name.endswith("viscous"))
-    ]
+    sources = _possible(has_input, timed)
     temperatures = np.array([loop.temperature for loop in loops])
     warmed = bool(np.isfinite(temperatures).all()) and float(np.ptp(temperatures)) >= MIN_TEMPERATURE_SPAN
     lubricants = [*dict.fromkeys(each.lubricant for each in sources if each.lubricant)] if warmed else []
@@ -540,6 +559,15 @@ def _relaxation(loops: Sequence[LossLoop], largest: int) -> _Relaxation | None:
         return None
     slowest, fastest = (float(pick([loop.frequency for loop in loops])) for pick in (np.min, np.max))
     return _Relaxation(loops[largest].frequency, float(np.sqrt(slowest * fastest)), 0.5 * float(np.log(fastest / slowest)))
+
+
+def _possible(has_input: bool, timed: bool) -> list[Source]:
+    """Return the sources that loops may contain."""
+    return [
+        each
+        for each in SOURCES
+        if (has_input or not each.name.startswith("bearing")) and (timed or not each.name.endswith("viscous"))
+    ]
 
 
 def _splines(loop: LossLoop) -> Array:
@@ -709,13 +737,16 @@ def _with_rows(covariance: Array, rows: Array) -> Array:
     return np.asarray(covariance - shared.T @ np.linalg.solve(np.eye(len(rows)) + shared @ rows.T, shared))
 
 
-def _planned(fit: _Fit) -> Iterator[tuple[LossLoop, Array]]:
-    """Yield loops that could be measured, and their equations of amplitudes and changes, as rows of unit uncertainty."""
+def _planned(fit: _Fit, input_ratio: float = 0.0) -> Iterator[tuple[LossLoop, Array]]:
+    """Yield loops that could be measured, and their equations of amplitudes and changes, as rows of unit uncertainty.
+
+    Loops at the input are among them if some were measured there, or if a ratio is given.
+    """
     largest, curve, model = fit.loops[fit.largest], fit.curves[fit.largest], fit.widths
     stiffness = 2.0 * curve.reach / (largest.ends[1] - largest.ends[0])
     rate = largest.speed if largest.is_timed else np.nan
     rates, warmths = PLANNED_RATES if largest.is_timed else (1.0,), PLANNED_WARMTHS if model.lubricants else (0.0,)
-    ratios = {0.0, *(each.ratio for each in fit.loops)}
+    ratios = {0.0, input_ratio, *(each.ratio for each in fit.loops)}
     for ratio, warmer, faster, part in product(sorted(ratios), warmths, rates, PLANNED_REACHES):
         temperature, reach = largest.temperature + warmer, part * curve.reach
         loop = LossLoop.planned(ratio, stiffness, reach, faster * rate, temperature)
