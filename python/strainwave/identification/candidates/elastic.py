@@ -41,7 +41,7 @@ from strainwave.identification.candidates.torsion.springs import (
 )
 from strainwave.identification.experiments.drive_log import MAX_DRIVEN_CUTOFF_SHARE, DrivenLog
 from strainwave.identification.experiments.friction_table import FRICTIONLESS
-from strainwave.identification.experiments.motion import motion_of, spectra
+from strainwave.identification.experiments.motion import motion_of
 from strainwave.identification.experiments.motion_log import MotionLog, inertia_of, transmitted_torque
 from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit_of, problem_of
 from strainwave.identification.fitting.problem import Problem
@@ -49,6 +49,7 @@ from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.linear_fit import linear_fit, order_waves, solved
 from strainwave.statistics.residuals import correlation_length
 from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain
+from strainwave.statistics.spectrum import mean_power
 
 Array = NDArray[np.float64]
 
@@ -67,6 +68,7 @@ MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more ar
 SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
+DIFFERENCES_OF_ANGLE = 3  # of the angle, whose spectra of motion and noise are compared
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
@@ -209,12 +211,16 @@ def _cutoff_of_signal(recording: Recording) -> float | None:
     """Return the cut-off above which the input angle is noise [Hz]; None if motion fills the band that samples can follow.
 
     Noise of the input makes a simulated output vibrate: a fit makes up for it by damping and hysteresis that are not there.
+    Third differences are compared: a slow motion of angle or speed leaks by the window over the noise, up to the resonance.
     """
     step = float(np.median(np.diff(recording.time)))
     grid = np.arange(recording.time[0], recording.time[-1], step)
     angle = np.interp(grid, recording.time, recording.values("input_angle", "rad"))
-    frequency, acceleration, noise, _ = spectra(angle, step)
-    signal = frequency[acceleration > MIN_SIGNAL * noise]
+    frequency, power = mean_power(np.diff(angle, DIFFERENCES_OF_ANGLE), len(angle) // 8)
+    of_white = (2.0 * np.sin(np.pi * frequency)) ** (2 * DIFFERENCES_OF_ANGLE)
+    upper = frequency > 0.25  # as in `spectra`: white noise alone
+    noise = of_white * float(np.median(power[upper] / of_white[upper]))
+    signal = frequency[power > MIN_SIGNAL * noise] / step
     cutoff = CUTOFF_MARGIN * float(signal.max(initial=0.0))
     return cutoff if 0.0 < cutoff < MAX_DRIVEN_CUTOFF_SHARE / step else None
 
@@ -320,7 +326,8 @@ def _simpler(drive: Drive, reach: float) -> Iterator[Drive]:
     spring = gear.stiffness
     if isinstance(spring, stiffness.ThreeSegment) and spring.t2 < reach:
         first = abs(spring.k2 - spring.k1) > abs(spring.k3 - spring.k2)  # the larger bend stays
-        t1, k2 = (spring.t1, spring.k2) if first else (spring.t2, spring.k3)
+        beyond = (reach - spring.t1) / ((spring.t2 - spring.t1) / spring.k2 + (reach - spring.t2) / spring.k3)
+        t1, k2 = (spring.t1, beyond) if first else (spring.t2, spring.k3)
         two = stiffness.ThreeSegment(k1=spring.k1, k2=k2, k3=k2, t1=t1, t2=UNREACHED_TORQUE)
         yield drive.replace(gear=gear.replace(stiffness=two))
     if not isinstance(spring, stiffness.Linear):

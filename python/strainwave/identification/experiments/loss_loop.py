@@ -32,6 +32,8 @@ class LossLoop(ComparedByFields):
         sense: 1 on the way up, -1 down, shape (n,)
         rate: of the twist without its sign, shape (n,) [rad/s]; not a number without a clock
         ratio: of the gear without its sign if the loop was measured at the input, 0 if at the output
+        frequency: angular, of the sine whose mean squares of twist and rate are those of the loop [rad/s]; not a number without
+            a clock
         temperature: mean [K]; not a number if it was not measured
         ends: smallest and largest twist, at the reversals [rad]
     """
@@ -41,6 +43,7 @@ class LossLoop(ComparedByFields):
     sense: Array
     rate: Array
     ratio: float
+    frequency: float
     temperature: float
     ends: tuple[float, float]
 
@@ -75,14 +78,15 @@ class LossLoop(ComparedByFields):
         kept = sense != 0.0
         warmth = float(np.mean(recording.values("temperature", "K"))) if "temperature" in recording else np.nan
         ratio = 0.0 if loop.input_ratio is None else abs(loop.input_ratio)
-        return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, warmth, (low, high))
+        frequency = np.nan if time is None else _frequency(time[kept], loop.twist[kept] - 0.5 * (low + high), rate[kept])
+        return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, frequency, warmth, (low, high))
 
     def apart(self, share: float) -> LossLoop:
         """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike."""
         low, high = self.ends
         kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
         series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
-        return LossLoop(*series, self.ratio, self.temperature, self.ends)
+        return LossLoop(*series, self.ratio, self.frequency, self.temperature, self.ends)
 
     @classmethod
     def planned(cls, ratio: float, stiffness: float, reach: float, rate: float, temperature: float) -> LossLoop:
@@ -91,7 +95,8 @@ class LossLoop(ComparedByFields):
         torque = np.concatenate((up, up[::-1]))
         sense = np.repeat([1.0, -1.0], len(up))
         ends = -reach / stiffness, reach / stiffness
-        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, temperature, ends)
+        frequency = np.sqrt(3.0) * rate / ends[1]
+        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, frequency, temperature, ends)
 
     @property
     def is_timed(self) -> bool:
@@ -115,3 +120,12 @@ class LossLoop(ComparedByFields):
         at_rate = f", {quantity(self.speed, 'rad/s')} of twist" if self.is_timed else ""
         warm = f", {self.temperature - 273.15:.0f} °C" if self.is_warm else ""
         return f"±{quantity(0.5 * float(np.ptp(self.torque)), 'N.m')} at the {side}{at_rate}{warm}"
+
+
+def _frequency(time: Array, twist: Array, rate: Array) -> float:
+    """Return the angular frequency of the sine with the mean squares of a twist and its rate [rad/s].
+
+    A Maxwell branch that relaxes much slower or faster than that loses per cycle what it loses under the sine, whatever the
+    waveform is.
+    """
+    return float(np.sqrt(np.trapezoid(rate**2, time) / np.trapezoid(twist**2, time)))

@@ -9,12 +9,16 @@ form of h, with S the torque on that curve, T its largest, v the rate of the twi
     gear, viscous                 h = c |v|             at both sides
     mesh, in proportion to load   h = mu |S|            sliding between teeth, Coulomb
     flexspline, material          h = eta T sqrt(1 - (S/T)²), or with 3 pi / 8 (1 - (S/T)²) in place of the root
+    flexspline, relaxing material h = k tau |v| / (1 + omega² tau²)
 
 Both shapes of the material lose 2 pi eta times the stored energy in a cycle of a linear spring, at any rate: eta is a loss
-factor. The first is the ellipse of a complex stiffness, the second the lens of Rayleigh's law; any mixture is fitted. Friction
-changes with the temperature by exp(-kappa (temperature - that of the largest loop)); the material does not.
+factor. The first is the ellipse of a complex stiffness, the second the lens of Rayleigh's law; any mixture is fitted. The
+relaxing material is one Maxwell branch (`sw.material.GeneralisedMaxwell`). It loses pi a² k omega tau / (1 + omega² tau²) in a
+cycle under a sine of the amplitude a and the angular frequency omega. Viscous friction, a loss factor, k and tau are four
+unknowns over the rate: the material takes part from four rates on, if they show it beyond chance. Friction changes with the
+temperature by exp(-kappa (temperature - that of the largest loop)); the material does not.
 
-For given kappa the torque is linear in all others, and so is the loss of a cycle. Loops at one load do not separate what is
+The torque is linear in all but kappa and tau, and so is the loss of a cycle. Loops at one load do not separate what is
 proportional to load from what is constant, loops at one rate not viscous from dry friction, and loops at one side not the
 bearing from the gear: the covariance of the fit contains that, and a share is stated only as well as it is separated.
 """
@@ -57,6 +61,9 @@ MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from 
 ROUNDS_OF_CURVE = 2  # in which curve and widths are fitted in turn
 MIN_NOISE_SHARE = 1e-5  # of the torque: no sensor has less noise
 MIN_MISFIT_SIGMA = 4.0  # standard deviations of a loop's width that no source explains
+MIN_RATES, MIN_RATIO_OF_RATES = 4, 1.3  # that determine a relaxation, too; of a rate to the next slower one (assumed)
+STARTS_OF_TIME = (-1.0, 0.0, 1.0)  # standard deviations of the logarithm of the relaxation time
+MIN_RELAXING_SIGMA = 3.0  # standard deviations of the share of a material whose relaxation time is stated
 MAX_PLANNED_LOOPS = 3
 PLANNED_REACHES, PLANNED_RATES, PLANNED_WARMTHS = (1.0, 0.5, 0.25), (1.0, 5.0), (0.0, 20.0)  # of the loop that is there; K
 
@@ -118,6 +125,10 @@ SOURCES = (
         "flexspline, material", "loss factor", "1",
         (lambda _, curve: curve.reach * np.sqrt(curve.bow), lambda _, curve: 3.0 * np.pi / 8.0 * curve.reach * curve.bow),
     ),
+)  # fmt: skip
+RELAXING = Source(
+    "flexspline, relaxing material", "loss modulus at the rate of the largest loop", "N.m/rad",
+    (lambda loop, _: loop.rate / loop.frequency,),
 )  # fmt: skip
 
 
@@ -292,7 +303,8 @@ def further_loops(loops: Sequence[Recording], gear: Gear) -> FurtherLoops:
 
 def _with_bearing(fit: _Fit, ratio: float) -> _Fit:
     """Return the fit of loops at the output with the sources of loops at the input, of which nothing but the prior is known."""
-    model = replace(fit.widths, sources=_possible(has_input=True, timed=fit.loops[fit.largest].is_timed))
+    possible = _possible(has_input=True, timed=fit.loops[fit.largest].is_timed)
+    model = replace(fit.widths, sources=[*(each for each in possible if each not in fit.widths.sources), *fit.widths.sources])
     unit_loss = _cycle(replace(fit.loops[fit.largest], ratio=ratio), fit.curves[fit.largest], model)
     count = len(unit_loss) - len(fit.unit_loss)  # SOURCES begins with the bearing
     covariance = np.pad(fit.covariance, ((count, 0), (count, 0)))
@@ -303,14 +315,14 @@ def _with_bearing(fit: _Fit, ratio: float) -> _Fit:
 
 
 def _unknowns(fit: _Fit, total: float) -> Array:
-    """Return the matrix that makes shares, differences of shapes of one source, and falls of amplitudes and falls."""
+    """Return the matrix that makes shares, differences of shapes of one source, and changes of amplitudes and changes."""
     added = _added(fit.widths.sources)
     shapes = added.shape[1]
     first = [int(np.flatnonzero(row)[0]) for row in added]
     differences = np.eye(shapes)[[place for place in range(shapes) if place not in first]]
-    into = np.zeros((shapes + len(fit.falls),) * 2)
+    into = np.zeros((shapes + len(fit.changes),) * 2)
     into[:shapes, :shapes] = np.concatenate((added, differences)) * (fit.unit_loss / total)
-    into[shapes:, shapes:] = np.eye(len(fit.falls)) / FALL_SIGMA
+    into[shapes:, shapes:] = np.diag(1.0 / fit.widths.scales)
     return into
 
 
@@ -325,11 +337,19 @@ def _of_recordings(loops: Sequence[Recording], gear: Gear) -> tuple[_Fit, Array]
             raise ValueError(
                 f"loop {has.index(False) + 1} of {len(has)} has no {what}, others have one: give it to all or none"
             )
-    nearest, *others = REVERSAL_SHARES
-    near = _fitted([loop.apart(nearest) for loop in measured])
-    at_ends = [(curve.low, curve.high) for curve in near.curves]
-    fit, *further = (_fitted([loop.apart(share) for loop in measured], at_ends) for share in others)
-    return fit, np.array([each.shares - fit.shares for each in (near, *further)])
+    near, fit, far = _fits(measured, relaxing=True)
+    if fit.widths.relaxation and not fit.shows_relaxation:
+        near, fit, far = _fits(measured, relaxing=False)
+    return fit, np.array([each.shares - fit.shares for each in (near, far)])
+
+
+def _fits(loops: Sequence[LossLoop], *, relaxing: bool) -> Iterator[_Fit]:
+    """Yield the fits that leave out more and more next to reversals; `relaxing`: with that material at enough rates."""
+    at_ends = None
+    for share in REVERSAL_SHARES:
+        fit = _fitted([loop.apart(share) for loop in loops], at_ends, relaxing=relaxing)
+        at_ends = at_ends or [(curve.low, curve.high) for curve in fit.curves]
+        yield fit
 
 
 # ---- Fit -------------------------------------------------------------------------------------------------------------
@@ -342,24 +362,61 @@ class _Widths:
     sources: list[Source]
     lubricants: list[str]
     reference_temperature: float
+    relaxation: _Relaxation | None
+
+    @property
+    def scales(self) -> Array:
+        """Standard deviations of what is not linear before the loops: falls [1/K], logarithm of the relaxation time."""
+        return np.array([FALL_SIGMA] * len(self.lubricants) + ([self.relaxation.spread] if self.relaxation else []))
+
+    @property
+    def starts(self) -> Iterator[Array]:
+        """Initial values of the same."""
+        for share in STARTS_OF_TIME if self.relaxation else (0.0,):
+            yield np.append(np.zeros(len(self.lubricants)), [share * self.relaxation.spread] if self.relaxation else [])
 
     def of_loop(self, loop: LossLoop, curve: _Curve) -> Array:
-        """Return them for the number 1 at the reference temperature, shape (n, shapes)."""
+        """Return them for the number 1 at temperature and rate of the largest loop, shape (n, shapes)."""
         shapes = [shape(loop, curve) for source in self.sources for shape in source.shapes]
         return loop.sense[:, np.newaxis] * np.stack(shapes, axis=1)
 
-    def factors(self, temperature: float, falls: Array) -> tuple[Array, Array]:
-        """Return the factor of each shape at a temperature, and its derivative by each fall, shape (shapes, falls)."""
-        warmer = temperature - self.reference_temperature if self.lubricants else 0.0
+    def factors(self, loop: LossLoop, changes: Array) -> tuple[Array, Array]:
+        """Return the factor of each shape at temperature and rate of a loop, and its derivatives, shape (shapes, changes)."""
+        warmer = loop.temperature - self.reference_temperature if self.lubricants else 0.0
         own = [source.lubricant for source in self.sources for _ in source.shapes]
         of_fall = np.array([[name == each for each in self.lubricants] for name in own], float).reshape(len(own), -1)
-        factor = np.exp(-warmer * (of_fall @ falls))
-        return factor, -warmer * of_fall * factor[:, np.newaxis]
+        factor = np.exp(-warmer * (of_fall @ changes[: len(self.lubricants)]))
+        slopes = -warmer * of_fall * factor[:, np.newaxis]
+        if self.relaxation is None:
+            return factor, slopes
+        factor[-1], slope = self.relaxation.factor(loop.frequency, float(changes[-1]))
+        return factor, np.column_stack((slopes, np.append(np.zeros(len(own) - 1), slope)))
 
-    def jacobian(self, widths: Array, temperature: float, amplitudes: Array, falls: Array) -> Array:
-        """Return the derivatives of the torque by amplitudes and falls, shape (n, shapes + falls)."""
-        factor, slopes = self.factors(temperature, falls)
+    def jacobian(self, widths: Array, loop: LossLoop, amplitudes: Array, changes: Array) -> Array:
+        """Return the derivatives of the torque by amplitudes and changes, shape (n, shapes + changes)."""
+        factor, slopes = self.factors(loop, changes)
         return np.concatenate((widths * factor, widths @ (amplitudes[:, np.newaxis] * slopes)), axis=1)
+
+
+@dataclass(frozen=True)
+class _Relaxation:
+    """Loss modulus of a Maxwell branch over the angular frequency, in units of that of the largest loop.
+
+    Attributes:
+        reference: angular frequency of the largest loop [rad/s]
+        middle, spread: geometric mean of those of all loops [rad/s], and half of the logarithm of their range: what is assumed
+            of the inverse of the relaxation time, and of the logarithm of that
+    """
+
+    reference: float
+    middle: float
+    spread: float
+
+    def factor(self, frequency: float, logarithm: float) -> tuple[float, float]:
+        """Return it at a frequency [rad/s], and its derivative by the logarithm of the relaxation time over 1 / middle."""
+        here, there = (float((each * np.exp(logarithm) / self.middle) ** 2) for each in (frequency, self.reference))
+        factor = frequency / self.reference * (1.0 + there) / (1.0 + here)
+        return factor, factor * 2.0 * (there / (1.0 + there) - here / (1.0 + here))
 
 
 @dataclass(frozen=True, eq=False)
@@ -370,7 +427,7 @@ class _Fit:
         loops, curves: shape of each
         widths: of the sources that the loops may contain
         amplitudes: of each shape of each source
-        falls: of each lubricant with the temperature [1/K]
+        changes: fall of each lubricant with the temperature [1/K]; logarithm of the relaxation time over 1 / middle
         covariance: of both
         unit_loss: of each shape for the number 1, in a cycle of the largest loop [J]
         largest: place of that loop
@@ -382,12 +439,19 @@ class _Fit:
     curves: Sequence[_Curve]
     widths: _Widths
     amplitudes: Array
-    falls: Array
+    changes: Array
     covariance: Array
     unit_loss: Array
     largest: int
     noise: float
     misfit: float
+
+    @property
+    def shows_relaxation(self) -> bool:
+        """True if the last source, a relaxing material, is beyond chance with the relaxation time that is estimated."""
+        place, time = len(self.amplitudes) - 1, len(self.covariance) - 1
+        variance = self.covariance[place, place] - self.covariance[place, time] ** 2 / self.covariance[time, time]
+        return bool(self.amplitudes[place] > MIN_MISFIT_SIGMA * np.sqrt(variance))
 
     @property
     def shares(self) -> Array:
@@ -430,36 +494,36 @@ class _Equations:
         return replace(self, widths=rows[:, :-1], torque=rows[:, -1])
 
 
-def _fitted(loops: Sequence[LossLoop], at_ends: Sequence[tuple[float, float]] | None = None) -> _Fit:
+def _fitted(loops: Sequence[LossLoop], at_ends: Sequence[tuple[float, float]] | None, *, relaxing: bool) -> _Fit:
     """Fit all sources to all loops, with a curve of each loop that both ways share, between known torques at its ends [N.m]."""
     known = [None] * len(loops) if at_ends is None else at_ends
     curves = [_curve(loop, None, ends) for loop, ends in zip(loops, known, strict=True)]
     largest = _largest(loops, curves)
-    model = _model_of(loops, largest)
+    model = _model_of(loops, largest, relaxing=relaxing)
     for _ in range(ROUNDS_OF_CURVE):
         curves = [
             _curve(loop, model.of_loop(loop, curve), ends) for loop, curve, ends in zip(loops, curves, known, strict=True)
         ]
     equations = [_Equations.of(loop, curve, model) for loop, curve in zip(loops, curves, strict=True)]
     unit_loss = _cycle(loops[largest], curves[largest], model)
-    before = _priors(unit_loss, equations[largest], len(model.lubricants))
-    amplitudes, falls = _solved(model, equations, before)
-    rows = [model.jacobian(each.widths, each.loop.temperature, amplitudes, falls) for each in equations]
+    before = _priors(unit_loss, equations[largest], model.scales)
+    amplitudes, changes = _solved(model, equations, before)
+    rows = [model.jacobian(each.widths, each.loop, amplitudes, changes) for each in equations]
     explained = [row[:, : len(amplitudes)] @ amplitudes for row in rows]
     left = [each.torque - whole for each, whole in zip(equations, explained, strict=True)]
     covariance, _ = posterior_of(np.concatenate(rows), [each[np.newaxis] for each in left], before)
     misfit = max(_misfit(*each) for each in zip(left, explained, strict=True))
     noise = float(np.median([each.noise for each in equations]))
-    return _Fit(loops, curves, model, amplitudes, falls, covariance, unit_loss, largest, noise, misfit)
+    return _Fit(loops, curves, model, amplitudes, changes, covariance, unit_loss, largest, noise, misfit)
 
 
-def _priors(unit_loss: Array, largest: _Equations, falls: int) -> Array:
-    """Return priors about zero as rows: no source loses more than a cycle does, and friction falls a little with temperature.
+def _priors(unit_loss: Array, largest: _Equations, scales: Array) -> Array:
+    """Return priors about zero as rows: no source loses more than a cycle does, and what is not linear has these scales.
 
     The loss of a cycle is determined by the largest loop alone even if its sources are not.
     """
     loss = max(float(np.abs(unit_loss @ solved(largest.widths, largest.torque))), 1e-300)
-    return np.diag(np.append(unit_loss / (PRIOR_SHARE_SIGMA * loss), np.full(falls, 1.0 / FALL_SIGMA)))
+    return np.diag(np.append(unit_loss / (PRIOR_SHARE_SIGMA * loss), 1.0 / scales))
 
 
 def _largest(loops: Sequence[LossLoop], curves: Sequence[_Curve]) -> int:
@@ -472,14 +536,29 @@ def _largest(loops: Sequence[LossLoop], curves: Sequence[_Curve]) -> int:
     return next(place for place in near if loops[place].speed <= slowest)
 
 
-def _model_of(loops: Sequence[LossLoop], largest: int) -> _Widths:
-    """Return the sources that loops may contain, at the temperature of the largest, and the lubricants whose fall they show."""
+def _model_of(loops: Sequence[LossLoop], largest: int, *, relaxing: bool) -> _Widths:
+    """Return the sources that loops may contain, referred to the largest, and the lubricants whose fall they show."""
     has_input, timed = any(loop.ratio for loop in loops), all(loop.is_timed for loop in loops)
     sources = _possible(has_input, timed)
     temperatures = np.array([loop.temperature for loop in loops])
     warmed = bool(np.isfinite(temperatures).all()) and float(np.ptp(temperatures)) >= MIN_TEMPERATURE_SPAN
     lubricants = [*dict.fromkeys(each.lubricant for each in sources if each.lubricant)] if warmed else []
-    return _Widths(sources, lubricants, temperatures[largest].item())
+    relaxation = _relaxation(loops, largest) if relaxing else None
+    return _Widths([*sources, *([RELAXING] if relaxation else [])], lubricants, temperatures[largest].item(), relaxation)
+
+
+def _rates(loops: Sequence[LossLoop]) -> int:
+    """Return at how many rates loops were measured; 0 if not all have a clock."""
+    rates = np.sort([loop.frequency for loop in loops])
+    return int(np.isfinite(rates).all()) * (1 + int(np.count_nonzero(rates[1:] > MIN_RATIO_OF_RATES * rates[:-1])))
+
+
+def _relaxation(loops: Sequence[LossLoop], largest: int) -> _Relaxation | None:
+    """Return the relaxation that loops at enough rates may show; None if they have fewer, or no clock."""
+    if _rates(loops) < MIN_RATES:
+        return None
+    slowest, fastest = (float(pick([loop.frequency for loop in loops])) for pick in (np.min, np.max))
+    return _Relaxation(loops[largest].frequency, float(np.sqrt(slowest * fastest)), 0.5 * float(np.log(fastest / slowest)))
 
 
 def _possible(has_input: bool, timed: bool) -> list[Source]:
@@ -547,24 +626,28 @@ def _cycle(loop: LossLoop, curve: _Curve, model: _Widths) -> Array:
 
 
 def _solved(model: _Widths, equations: Sequence[_Equations], before: Array) -> tuple[Array, Array]:
-    """Return amplitudes and falls by least squares with priors about zero."""
+    """Return amplitudes and changes by least squares with priors about zero."""
     from scipy.optimize import least_squares
 
     small, shapes = [each.triangle for each in equations], equations[0].widths.shape[1]
 
     def residual(unknowns: Array) -> Array:
-        amplitudes, falls = unknowns[:shapes], unknowns[shapes:]
-        left = [each.widths @ (model.factors(each.loop.temperature, falls)[0] * amplitudes) - each.torque for each in small]
+        amplitudes, changes = unknowns[:shapes], unknowns[shapes:]
+        left = [each.widths @ (model.factors(each.loop, changes)[0] * amplitudes) - each.torque for each in small]
         return np.concatenate((*left, before @ unknowns))
 
     def slopes(unknowns: Array) -> Array:
-        amplitudes, falls = unknowns[:shapes], unknowns[shapes:]
-        rows = [model.jacobian(each.widths, each.loop.temperature, amplitudes, falls) for each in small]
+        amplitudes, changes = unknowns[:shapes], unknowns[shapes:]
+        rows = [model.jacobian(each.widths, each.loop, amplitudes, changes) for each in small]
         return np.concatenate((*rows, before))
 
-    nothing = np.zeros(len(before))
-    begin = np.append(solved(slopes(nothing)[:, :shapes], -residual(nothing)), nothing[shapes:])
-    unknowns = least_squares(residual, begin, slopes, method="lm", x_scale="jac").x
+    def solution(changes: Array) -> tuple[float, Array]:
+        nothing = np.append(np.zeros(shapes), changes)
+        begin = np.append(solved(slopes(nothing)[:, :shapes], -residual(nothing)), changes)
+        answer = least_squares(residual, begin, slopes, method="lm", x_scale="jac")
+        return float(answer.cost), answer.x
+
+    _, unknowns = min((solution(changes) for changes in model.starts), key=lambda each: each[0])
     return unknowns[:shapes], unknowns[shapes:]
 
 
@@ -616,7 +699,15 @@ def _shares(fit: _Fit, shifts: Array) -> LossShares:
         return f"{known}{_next_loops(fit, place, total)}"
 
     shares = tuple(share(place) for place in range(len(names)))
-    return LossShares(shares, total, fit.loops[fit.largest].words, tuple(_remarks(fit)))
+    return LossShares(shares, total, fit.loops[fit.largest].words, (*_relaxation_time(fit, shares[-1]), *_remarks(fit)))
+
+
+def _relaxation_time(fit: _Fit, share: LossShare) -> Iterator[str]:
+    """Yield the relaxation time in words if the share of the relaxing material is beyond chance."""
+    if fit.widths.relaxation and share.is_separated and share.share > MIN_RELAXING_SIGMA * share.sigma:
+        time = float(np.exp(fit.changes[-1])) / fit.widths.relaxation.middle
+        sigma = time * float(np.hypot(np.sqrt(fit.covariance[-1, -1]), share.sigma / share.share))
+        yield f"{share.name}: one Maxwell branch that relaxes in {uncertain_quantity(time, sigma, 's')}"
 
 
 def _added(sources: Sequence[Source]) -> Array:
@@ -627,7 +718,7 @@ def _added(sources: Sequence[Source]) -> Array:
 
 def _next_loops(fit: _Fit, place: int, total: float) -> str:
     """Return in words the loops that would separate a source, the best one first."""
-    weights = np.append((_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total), np.zeros(len(fit.falls)))
+    weights = np.append((_added(fit.widths.sources)[place] * fit.unit_loss) / abs(total), np.zeros(len(fit.changes)))
     covariance, chosen, options = fit.covariance, list[LossLoop](), [*_planned(fit)]
 
     def sigma(after: Array) -> float:
@@ -647,7 +738,7 @@ def _with_rows(covariance: Array, rows: Array) -> Array:
 
 
 def _planned(fit: _Fit, input_ratio: float = 0.0) -> Iterator[tuple[LossLoop, Array]]:
-    """Yield loops that could be measured, and their equations of amplitudes and falls, as rows of unit uncertainty.
+    """Yield loops that could be measured, and their equations of amplitudes and changes, as rows of unit uncertainty.
 
     Loops at the input are among them if some were measured there, or if a ratio is given.
     """
@@ -660,7 +751,7 @@ def _planned(fit: _Fit, input_ratio: float = 0.0) -> Iterator[tuple[LossLoop, Ar
         temperature, reach = largest.temperature + warmer, part * curve.reach
         loop = LossLoop.planned(ratio, stiffness, reach, faster * rate, temperature)
         widths = model.of_loop(loop, _Curve(loop.torque, -reach, reach)) / fit.noise
-        rows = model.jacobian(widths, temperature, fit.amplitudes, fit.falls)
+        rows = model.jacobian(widths, loop, fit.amplitudes, fit.changes)
         yield loop, np.asarray(np.linalg.qr(rows, mode="r"))
 
 
@@ -671,7 +762,11 @@ def _remarks(fit: _Fit) -> Iterator[str]:
         yield "no loop was measured at the output with the input locked, which alone separates the bearing from the gear"
     if not all(each.is_timed for each in fit.loops):
         yield "the loops have no time, so they are taken for so slow that no friction depends on the rate"
-    if len(fit.falls) == 0:
+    elif fit.widths.relaxation is None:
+        too_few = f"not separable: loops at {MIN_RATES} rates would separate it from viscous friction and a loss factor"
+        none = "viscous friction and a loss factor explain the loops at all rates without it"
+        yield f"{RELAXING.name}: {too_few if _rates(fit.loops) < MIN_RATES else none}"
+    if not fit.widths.lubricants:
         yield "the shares are those at the temperature of the loops, which does not vary or was not measured"
     if fit.misfit > 0.0:
         yield f"the sources leave up to {percent(fit.misfit)} of the width of a loop unexplained, which is part of ±"
