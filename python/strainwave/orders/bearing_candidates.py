@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,6 +34,7 @@ MAX_SIDEBAND = 6  # whole orders beside it
 MAX_SIGMAS = 2.5  # standard deviations by which an order may lie beside its cause
 STEPS_PER_SIGMA = 4.0  # of the diameter ratio that are tried, for the order that depends most on it
 MAX_STEPS = 40_000
+MAX_CHANCE = 0.05  # that random orders are explained as well
 MAX_LISTED = 4  # candidates in words
 ORDERS_PER_STRANGER = 3  # explained orders, of which one may have another cause
 
@@ -62,18 +64,22 @@ class BearingCandidates(Presented):
         candidates: all that explain the most orders, or two thirds of them, fewest balls first
         balls: their number, if all candidates have the same; else None
         orders: that were to be explained [1]
+        chance: probability that a bearing explains as many random orders; the number of balls is stated below 5 %
         remarks: what is not separated, and what would separate it
     """
 
     candidates: tuple[BearingCandidate, ...]
     balls: int | None
     orders: tuple[float, ...]
+    chance: float
     remarks: tuple[str, ...]
 
     def _headline(self) -> str:
         orders = f"orders {listed([number(q, 5) for q in self.orders])}"
         if not self.candidates:
             return f"no ball bearing of {BALL_COUNTS[0]} to {BALL_COUNTS[-1]} balls explains {orders}"
+        if self.chance > MAX_CHANCE:
+            return f"{orders} determine no bearing: random orders would be explained as well"
         if len(self.candidates) > MAX_LISTED:
             counts = sorted({each.balls for each in self.candidates})
             return f"{len(self.candidates)} bearings of {counts[0]} to {counts[-1]} balls explain {orders}: not separable"
@@ -128,8 +134,16 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
         for part in _stretches(count >= max(least, 1))
     )
     counts = {each.balls for each in best}
-    balls = counts.pop() if len(counts) == 1 else None
-    return BearingCandidates(best, balls, tuple(wanted.tolist()), tuple(_remarks(best, balls)))
+    chance = _chance(spread, most)
+    balls = counts.pop() if len(counts) == 1 and chance < MAX_CHANCE else None
+    return BearingCandidates(best, balls, tuple(wanted.tolist()), chance, tuple(_remarks(best, balls, chance)))
+
+
+def _chance(sigma: Array, explained: int) -> float:
+    """Return the number of bearings that explain so many of as many random orders, 1 at most."""
+    reach = 2.0 * MAX_SIGMAS * np.sort(sigma)[:explained]
+    bearings = sum(np.ptp(DIAMETER_RATIOS) * MAX_HARMONIC * balls / float(sigma.min()) for balls in BALL_COUNTS)
+    return float(min(1.0, bearings * comb(len(sigma), explained) * np.prod(np.minimum(1.0, (MAX_HARMONIC + 1) * reach))))
 
 
 def _explained(balls: int, orders: Array, sigma: Array, low: float, high: float) -> tuple[Array, Array]:
@@ -181,7 +195,9 @@ def _causes(balls: int, passes: float, reach: float, orders: Array, sigma: Array
             yield order, min(near)[1]
 
 
-def _remarks(best: tuple[BearingCandidate, ...], balls: int | None) -> Iterator[str]:
+def _remarks(best: tuple[BearingCandidate, ...], balls: int | None, chance: float) -> Iterator[str]:
+    if chance > MAX_CHANCE:
+        yield "some bearing explains as many random orders as well, so that these show none: more orders, or more exact ones"
     if best and balls is None:
         yield (
             f"{len({each.balls for each in best})} counts of balls are not separable: count the balls, or record more "

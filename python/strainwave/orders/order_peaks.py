@@ -232,7 +232,8 @@ class _Order:
 
         def amplitudes(values: Array) -> tuple[Complex, Complex]:
             columns = self._columns(values, signs, powers)
-            return columns, np.linalg.lstsq(self.weight[:, None] * columns, weighted, rcond=1e-10)[0]
+            factors: Complex = np.linalg.lstsq(self.weight[:, None] * columns, weighted, rcond=1e-10)[0].astype(complex)
+            return columns, factors
 
         def left(logs: Array) -> Array:
             columns, factors = amplitudes(np.exp(logs))

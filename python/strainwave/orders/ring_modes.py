@@ -29,12 +29,14 @@ from strainwave.messages import listed
 from strainwave.orders.bearing_candidates import BearingCandidates, bearing_candidates
 from strainwave.orders.order_peaks import OrderPeak, peaks_of
 from strainwave.orders.orders_over_speed import (
+    OrderLine,
     OrdersOverSpeed,
     orders_over_speed,
     turning_one_way,
     uneven_orders,
     whole_orders,
 )
+from strainwave.orders.turning import reach_of, smooth_speed
 from strainwave.presentation import Pictured, Row
 from strainwave.typeset import number, uncertain
 
@@ -48,6 +50,8 @@ STANDING_COLUMNS = ("vibration", "acceleration")  # of sensors that do not go ro
 MAX_WHOLE, MAX_UNEVEN = 8, 5  # orders that are followed if none are named
 MIN_APART = 0.6  # of a whole order from one that is none, which a short stretch does not separate
 MIN_STRETCHES = 12  # amplitudes of an order, for a peak and what passes by
+MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
+MIN_TURNS_IN_ALL = 60.0  # of the shaft, from which modes are looked for unasked
 MIN_SPEED_RATIO = 1.3  # of the fastest to the slowest speed, from which orders pass a range of frequencies
 MAX_SIGMAS = 2.5  # standard deviations between a peak and a line, and between dampings of one mode
 MAX_SLOPE = 6.5  # of a line: waves of a ring beyond six have no amplitude at the mesh
@@ -198,11 +202,9 @@ def ring_modes(
         followed = arguments.positive_series("orders", orders).tolist()
     spectrum = orders_over_speed(turning, followed)
     remarks = [*(remark for each in turning for remark in each.remarks), *spectrum.remarks]
-    if why := _too_little(spectrum):
-        remarks.append(why)
-    peaks, curves, more = (
-        _peaks(spectrum, {line.order: line.sigma for line in uneven}) if not why else ([], spectrum.amplitude, [])
-    )
+    peaks, curves, more = list[OrderPeak](), spectrum.amplitude, [_too_little(spectrum)]
+    if not any(more):
+        peaks, curves, more = _peaks(spectrum, {line.order: line.sigma for line in uneven})
     modes = _modes(peaks, column in STANDING_COLUMNS)
     return RingModes(
         modes,
@@ -213,19 +215,34 @@ def ring_modes(
         curves,
         column,
         given[0].unit(column),
-        bearing_candidates([line.order for line in uneven], [line.sigma for line in uneven]) if uneven else None,
-        tuple(dict.fromkeys([*remarks, *more, *_alone(peaks, modes)])),
+        _bearing(uneven, float(np.median([each.per_input for each in turning]))) if uneven else None,
+        tuple(dict.fromkeys(each for each in (*remarks, *more, *_alone(peaks, modes)) if each)),
     )
 
 
 def passes_frequencies(recordings: Sequence[Recording], angle: str) -> bool:
-    """Return True if the speeds of recordings differ enough for orders to pass a range of frequencies."""
-    speeds = []
-    for each in recordings:
-        turned = np.abs(np.gradient(each.values(angle, "rad"), each.time))
-        moving = turned[turned > 0.05 * float(np.quantile(turned, 0.95))]
-        speeds += np.quantile(moving, [0.05, 0.95]).tolist() if len(moving) else []
-    return bool(speeds) and max(speeds) > MIN_SPEED_RATIO * min(speeds)
+    """Return True if the shaft turns one way, far enough and at speeds that differ enough, for orders to pass a mode."""
+    turns, speeds = 0.0, list[float]()
+    for recording in recordings:
+        turned, time = np.unwrap(recording.values(angle, "rad")), recording.time
+        speed = smooth_speed(turned, reach_of(len(turned))) / max(float(np.median(np.diff(time))), 1e-300)
+        if np.mean(np.sign(speed) == np.sign(speed[len(speed) // 2])) < MIN_ONE_WAY_SHARE:
+            return False
+        turns += float(np.ptp(turned)) / tau
+        speeds += [float(each) for each in np.quantile(np.abs(speed), [0.05, 0.95])]
+    return turns > MIN_TURNS_IN_ALL and max(speeds) > MIN_SPEED_RATIO * max(min(speeds), 1e-300)
+
+
+def _bearing(uneven: Sequence[OrderLine], per_input: float) -> BearingCandidates:
+    """Return the bearings that explain orders, whose outer ring stands or turns back with the output."""
+    orders, sigmas = [line.order for line in uneven], [line.sigma for line in uneven]
+    stands = bearing_candidates(orders, sigmas)
+    if not per_input:
+        return stands
+    turns = bearing_candidates(orders, sigmas, outer_speed=-per_input)
+    counts = {stands.balls, turns.balls}
+    balls = counts.pop() if len(counts) == 1 else None
+    return replace(stands, candidates=(*stands.candidates, *turns.candidates), balls=balls)
 
 
 def _too_little(spectrum: OrdersOverSpeed) -> str:
@@ -375,8 +392,8 @@ def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
         return []
     each = listed([f"{number(peak.order, 5)} at {number(peak.speed * 30.0 / np.pi, 4)} 1/min" for peak in alone])
     return [
-        f"peaks of order {each}: frequency and waves of the modes that they meet are not separable; a mode with n waves has |q - n| "
-        "or q + n times the speed of the peak. A second order q that meets it separates them"
+        f"peaks of order {each}: frequency and waves of the modes that they meet are not separable; a mode with n waves has "
+        "|q - n| or q + n times the speed of the peak. A second order q that meets it separates them"
     ]
 
 

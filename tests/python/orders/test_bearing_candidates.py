@@ -19,7 +19,7 @@ def test_one_order_leaves_many_bearings() -> None:
     assert is_in(found)
     assert found.balls is None
     assert len({each.balls for each in found.candidates}) > 20
-    assert "count the balls" in found.remarks[0]
+    assert "count the balls" in found.remarks[1]
 
 
 @pytest.mark.slow("orders")
@@ -43,6 +43,16 @@ def test_the_outer_ring_may_turn() -> None:
     turning = 1.0 - sw.orders.bearing_orders(BALLS, BALL, PITCH, outer_speed=-0.02).cage
     found = sw.orders.bearing_candidates([BALLS * turning, 3.0 * turning], [1e-4, 1e-4], outer_speed=-0.02)
     assert is_in(found)
+
+
+@pytest.mark.slow("orders")
+def test_random_orders_determine_no_bearing() -> None:
+    random = np.random.default_rng(4)
+    found = [sw.orders.bearing_candidates(random.uniform(0.3, 40.0, 3), np.full(3, 1e-3)) for _ in range(10)]
+    assert all(each.balls is None for each in found)
+    assert "determine no bearing" in found[0]._headline()
+    exact = BALLS * PASSES * np.array([1.0, 2.0, 3.0, 4.0]) + [0.0, 3.0, -1.0, 2.0]
+    assert sw.orders.bearing_candidates([*exact, 5.0 * PASSES, 13.0 * PASSES], np.full(6, 1e-4)).chance < 1e-3
 
 
 @pytest.mark.parametrize(("orders", "sigma"), [([10.5], [0.1, 0.1]), ([-1.0], [0.1]), ([10.5], [0.0]), ([], [])])

@@ -1,14 +1,17 @@
-"""Modes that orders pass over the speed, from sums in closed form: u = Re(f / 2 [H((q + n) Ω) + H((q - n) Ω)] e^(j q θ))."""
+"""Peaks of orders and modes from sums in closed form: u = Re(f / 2 [H((q + n) Ω) + H((q - n) Ω)] e^(j q θ))."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 from math import tau
 
 import numpy as np
 import pytest
 import strainwave as sw
+from scipy.integrate import cumulative_trapezoid
+from scipy.signal import lfilter
+from strainwave.orders.order_peaks import peaks_of
+from strainwave.orders.orders_over_speed import OrdersOverSpeed, Turning
 
 UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}
 Mode = tuple[float, float, int, Mapping[float, complex]]  # frequency [Hz], damping, waves, force of each order
@@ -37,92 +40,93 @@ def at_constant_speeds(
     return recordings
 
 
-@cache
-def travelling() -> sw.orders.RingModes:
-    mode = (120.0, 0.03, 2, {2.0: 4e-6, 4.0: 3e-6j})
-    return sw.orders.ring_modes(at_constant_speeds([mode], 40.0), "output_angle", orders=[2.0, 4.0])
+def near(mode: sw.orders.RingMode, frequency: float, damping: float) -> bool:
+    """True if a mode has these numbers within two standard deviations, and determines them."""
+    return (
+        abs(mode.frequency / tau - frequency) < 2.0 * mode.frequency_sigma / tau < 0.02 * frequency
+        and abs(mode.damping - damping) < 2.0 * mode.damping_sigma < 0.2 * damping
+    )
 
 
-@pytest.mark.slow("orders")
-def test_two_orders_separate_frequency_and_waves() -> None:
-    (mode,) = travelling().modes
+def test_three_peaks_of_two_orders_determine_frequency_and_waves() -> None:
+    found = sw.orders.ring_modes(
+        at_constant_speeds([(120.0, 0.03, 2, {3.0: 4e-6, 5.0: 3e-6j})], 50.0), "output_angle", orders=[3.0, 5.0]
+    )
+    (mode,) = found.modes
     assert mode.waves == 2
-    assert mode.natural_frequency == pytest.approx(tau * 120.0, abs=2.0 * mode.natural_frequency_sigma)
-    assert mode.natural_frequency_sigma < tau * 0.5
-    assert mode.damping == pytest.approx(0.03, abs=2.0 * mode.damping_sigma)
-    assert mode.damping_sigma < 0.0025
-    assert mode.orders == (2.0, 4.0)
+    assert near(mode, 120.0, 0.03)
+    assert sorted((peak.order, round(peak.speed / tau)) for peak in mode.peaks) == [(3.0, 24), (5.0, 17), (5.0, 40)]
+    assert len(found.plot().axes) == 2
 
 
-@pytest.mark.slow("orders")
-def test_the_critical_speeds_are_those_of_both_lines() -> None:
-    (mode,) = travelling().modes
-    speeds = sorted((order, round(speed / tau)) for order, speed in mode.candidates[0].critical_speeds)
-    assert speeds == [(2.0, 30), (4.0, 20), (4.0, 60)]
-
-
-@pytest.mark.slow("orders")
-def test_the_picture_has_a_panel_for_each_order() -> None:
-    assert len(travelling().plot().axes) == 2
-
-
-@pytest.mark.slow("orders")
-def test_one_order_leaves_several_waves_in_words() -> None:
-    mode = (60.0, 0.03, 0, {2.0: 4e-6})
-    found = sw.orders.ring_modes(at_constant_speeds([mode], 40.0), "output_angle", orders=[2.0, 4.0])
-    (passed,) = found.modes
-    assert passed.waves is None
-    assert np.isnan(passed.natural_frequency)
-    frequencies = {each.waves: each.natural_frequency / tau for each in passed.candidates}
-    assert frequencies[0] == pytest.approx(60.0, rel=0.01)
-    assert frequencies[2] == pytest.approx(120.0, rel=0.01)
-    assert "not separable: order 2 alone passes it: run to" in passed.separated_by
-
-
-@pytest.mark.slow("orders")
-def test_a_mode_beyond_the_speeds_is_not_stated() -> None:
-    mode = (300.0, 0.03, 0, {2.0: 4e-6, 4.0: 3e-6})
-    found = sw.orders.ring_modes(at_constant_speeds([mode], 40.0), "output_angle", orders=[2.0, 4.0])
+def test_one_order_states_its_peak_alone() -> None:
+    recordings = at_constant_speeds([(60.0, 0.03, 0, {2.0: 4e-6})], 40.0)
+    found = sw.orders.ring_modes(recordings, "output_angle", orders=[2.0, 4.0])
     assert found.modes == ()
+    (peak,) = found.peaks
+    assert (peak.order, peak.speed) == (2.0, pytest.approx(tau * 30.0, abs=2.0 * peak.speed_sigma))
+    assert any("frequency and waves of the modes that they meet are not separable" in remark for remark in found.remarks)
 
 
-@pytest.mark.slow("orders")
-def test_orders_that_do_not_change_have_no_mode() -> None:
+def test_two_peaks_of_two_modes_are_no_line_of_both() -> None:
+    """2 waves at 551 rad/s and none at 412 rad/s: one line through a peak of each has the slope -1.5."""
+    modes: list[Mode] = [(551.0 / tau, 0.03, 2, {4.0: 3e-6}), (412.0 / tau, 0.03, 0, {3.0: 3e-6})]
+    found = sw.orders.ring_modes(at_constant_speeds(modes, 33.0), "output_angle", orders=[3.0, 4.0])
+    assert all(mode.waves in (0, 2) for mode in found.modes)
+    assert all(
+        min(abs(mode.frequency - 551.0), abs(mode.frequency - 412.0)) < 2.0 * mode.frequency_sigma for mode in found.modes
+    )
+
+
+def test_without_a_mode_nothing_is_stated() -> None:
     found = sw.orders.ring_modes(at_constant_speeds([], 40.0), "output_angle", orders=[2.0, 4.0])
-    assert found.modes == ()
+    assert found.modes == () == found.peaks
+
+
+def test_a_sensor_that_stands_states_frequencies_without_slope() -> None:
+    recordings = at_constant_speeds([(60.0, 0.03, 0, {2.0: 4e-3, 4.0: 3e-3})], 40.0, column="vibration", noise=1e-4)
+    (mode,) = sw.orders.ring_modes(recordings, "vibration", orders=[2.0, 4.0]).modes
+    assert near(mode, 60.0, 0.03)
+    assert mode.slope == 0.0
+
+
+def in_a_run_up(duration: float) -> sw.Recording:
+    """A run-up to 40 revolutions per second past a mode at 90 Hz, damping 0.02, which answers in time."""
+    step, frequency, damping = 5e-4, 90.0, 0.02
+    time = np.arange(0.0, duration, step)
+    speed = tau * (4.0 + 36.0 * time / duration)
+    angle = cumulative_trapezoid(speed, time, initial=0.0)
+    pole = np.exp((-damping + 1j * np.sqrt(1.0 - damping**2)) * tau * frequency * step)
+    force = 1e-5 * (np.cos(3.0 * angle) + np.cos(4.0 * angle) + np.cos(5.0 * angle))
+    answer = lfilter([abs(1.0 - pole) ** 2], [1.0, -2.0 * pole.real, abs(pole) ** 2], force)
+    noise = np.random.default_rng(5).normal(0.0, 1e-7, len(time))
+    return sw.Recording({"time": time, "input_angle": angle, "output_angle": angle / 80.0 + answer + noise}, UNITS)
 
 
 @pytest.mark.slow("orders")
-def test_a_sensor_that_stands_does_not_determine_waves() -> None:
-    mode = (100.0, 0.03, 0, {2.0: 4e-6, 4.0: 3e-6})
-    recordings = at_constant_speeds([mode], 60.0, column="vibration")
-    (passed,) = sw.orders.ring_modes(recordings, "vibration", orders=[2.0, 4.0]).modes
-    assert passed.waves is None
-    assert passed.natural_frequency == pytest.approx(tau * 100.0, abs=2.0 * passed.natural_frequency_sigma)
-    assert "whatever the waves" in passed.separated_by
+def test_a_slow_run_up_determines_a_mode_and_a_fast_one_says_that_it_is_too_fast() -> None:
+    (mode,) = sw.orders.ring_modes(in_a_run_up(60.0), "output_angle", orders=[3.0, 4.0, 5.0]).modes
+    assert mode.waves == 0
+    assert near(mode, 90.0, 0.02)
+    fast = sw.orders.ring_modes(in_a_run_up(3.0), "output_angle", orders=[3.0, 4.0, 5.0])
+    assert fast.modes == ()
+    assert any("too fast" in remark or "stretches determine no mode" in remark for remark in fast.remarks)
 
 
-@pytest.mark.slow("orders")
-def test_two_modes_are_separated_by_orders_that_are_found() -> None:
-    modes = [(60.0, 0.03, 0, {2.0: 4e-6, 4.0: 2e-6}), (140.0, 0.02, 3, {1.0: 3e-6, 2.0: 3e-6, 4.0: 4e-6})]
-    found = sw.orders.ring_modes(at_constant_speeds(modes, 45.0, count=120), "output_angle")
-    assert set(found.orders) == {1.0, 2.0, 4.0}
-    assert [mode.waves for mode in found.modes] == [0, 3]
-    for mode, (frequency, damping, _, _) in zip(found.modes, modes, strict=True):
-        assert mode.natural_frequency == pytest.approx(tau * frequency, abs=2.0 * mode.natural_frequency_sigma)
-        assert mode.damping == pytest.approx(damping, abs=2.0 * mode.damping_sigma)
-
-
-def test_one_speed_is_too_little() -> None:
-    found = sw.orders.ring_modes(at_constant_speeds([], 40.0)[:1], "output_angle", orders=[2.0])
-    assert found.modes == ()
-    assert "stretches determine no mode" in found.remarks[0]
-
-
-@pytest.mark.parametrize(
-    ("recordings", "column", "message"),
-    [([], "output_angle", "has none"), (None, "nothing", "nothing")],
-)
-def test_what_is_missing_is_named(recordings: list[sw.Recording] | None, column: str, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        sw.orders.ring_modes(at_constant_speeds([], 40.0)[:2] if recordings is None else recordings, column)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_peak_of_an_order_is_that_of_its_receptance(sign: float) -> None:
+    """Exactly, without noise: of both senses in which a wave may go round."""
+    speed = np.linspace(10.0, 60.0, 40)
+    ratio = speed / 31.0
+    amplitude = 2.0 + 0.01 * speed + (0.3 - 0.2j) / (1.0 - ratio**2 + 2j * sign * 0.04 * ratio)
+    stretches = np.stack([np.zeros(40, int), np.full(40, 2), np.zeros(40, int)], axis=1)
+    series = np.arange(3.0)
+    turning = Turning(series, series, np.ones(3), series, 0.0, ())
+    spectrum = OrdersOverSpeed(
+        np.array([3.0]), speed, amplitude[None], np.full(40, 1e-9), np.zeros(40), stretches, (turning,), ()
+    )
+    ((peak,), curve, remarks) = peaks_of(spectrum, 0)
+    assert peak.speed == pytest.approx(31.0, rel=1e-6)
+    assert peak.damping == pytest.approx(0.04, rel=1e-4)
+    assert np.abs(curve - amplitude).max() < 1e-6
+    assert remarks == []
