@@ -12,7 +12,6 @@ from .over_temperature import (
     ErrorOverTemperature as ErrorOverTemperature,
     error_over_temperature as error_over_temperature,
 )
-from .order_peaks import OrderPeak as OrderPeak
 from .ring_modes import RingModes as RingModes, ring_modes as ring_modes
 from .torque_ripple import Ripple as Ripple, ripple as ripple
 from .tracked_orders import OrderTracks as OrderTracks, order_tracks as order_tracks

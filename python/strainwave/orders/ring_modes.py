@@ -48,6 +48,8 @@ Complex = NDArray[np.complex128]
 
 STANDING_COLUMNS = ("vibration", "acceleration")  # of sensors that do not go round with the lobes
 MAX_WHOLE, MAX_UNEVEN = 8, 5  # orders that are followed if none are named
+MAX_BESIDE = 12  # orders that are none, those followed and those fitted beside them
+LEAKING_SHARE = 0.2  # of the height of a peak, below which that of another order at the same speed may be its leakage
 MIN_APART = 0.6  # of a whole order from one that is none, which a short stretch does not separate
 MIN_STRETCHES = 12  # amplitudes of an order, for a peak and what passes by
 MIN_ONE_WAY_SHARE = 0.95  # of the samples of a run-up
@@ -126,10 +128,10 @@ class RingModes(ComparedByFields, Pictured):
     def _headline(self) -> str:
         low, high = (number(float(end) * 30.0 / np.pi, 4) for end in (self.speed.min(), self.speed.max()))
         found = f"{len(self.modes)} mode{'s' * (len(self.modes) != 1)}" if self.modes else "no mode"
-        orders = f"orders {listed([number(q, 5) for q in self.orders])}" if self.orders else "no order"
-        return f"{found} in {self.column.replace('_', ' ')}, {orders}, {low} to {high} 1/min"
+        return f"{found} in {self.column.replace('_', ' ')}, {low} to {high} 1/min"
 
     def _rows(self) -> Iterator[Row]:
+        yield Row("orders followed", listed([number(q, 5) for q in self.orders]) or "none")
         for place, mode in enumerate(self.modes, 1):
             yield Row(f"mode {place}", words_of(mode))
         for peak in self.peaks:
@@ -200,7 +202,7 @@ def ring_modes(
         followed = [*whole[:MAX_WHOLE], *(line.order for line in uneven[:MAX_UNEVEN])]
     else:
         followed = arguments.positive_series("orders", orders).tolist()
-    spectrum = orders_over_speed(turning, followed)
+    spectrum = orders_over_speed(turning, followed, [line.order for line in uneven[MAX_UNEVEN:MAX_BESIDE]])
     remarks = [*(remark for each in turning for remark in each.remarks), *spectrum.remarks]
     peaks, curves, more = list[OrderPeak](), spectrum.amplitude, [_too_little(spectrum)]
     if not any(more):
@@ -265,7 +267,13 @@ def _peaks(spectrum: OrdersOverSpeed, sigmas: dict[float, float]) -> tuple[list[
         found, curves[place], more = peaks_of(spectrum, place)
         peaks += [replace(each, order_sigma=sigmas.get(order, 0.0)) for each in found]
         remarks += more
-    return peaks, curves, remarks
+    return [peak for peak in peaks if not any(_leaks(other, peak) for other in peaks)], curves, remarks
+
+
+def _leaks(strong: OrderPeak, weak: OrderPeak) -> bool:
+    """Return True if a peak may be that of another order at the same speed, which stretches do not quite separate."""
+    apart = abs(strong.speed / weak.speed - 1.0)
+    return weak.height < LEAKING_SHARE * strong.height and apart < strong.damping + weak.damping
 
 
 # ---- Lines through peaks ---------------------------------------------------------------------------------------------
