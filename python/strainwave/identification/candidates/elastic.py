@@ -13,7 +13,6 @@ elements has one answer. A stiffening spring and a slipping element can imitate 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -72,8 +71,6 @@ DIFFERENCES_OF_ANGLE = 3  # of the angle, whose spectra of motion and noise are 
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
-LOAD_INERTIA, DAMPING_PATH = "load.inertia", "gear.damping"
-SHARES_IN_PHASE = (0.05, 0.25)  # of a record, over which its vibration is followed (assumed)
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 GRAVITY_PATH = "load.gravity_torque"
 FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
@@ -194,8 +191,7 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
 def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bool) -> DrivenLog:
     """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates.
 
-    Torque and speed at its beginning are unknowns that start at those of the measured motion: an error of either makes a load
-    without damping vibrate for ever, for which a fit makes up by gravity, inertia and hysteresis that are not there.
+    It begins under the torque of the measured motion: any other one would make an output without damping vibrate for ever.
     """
     gear: Any = drive.gear
     stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
@@ -204,7 +200,7 @@ def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bo
     output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
     initial = {"torque": torque, "output_speed": float(output.speed[0])}
     compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial, _cutoff_of_signal(recording))
-    return (compared.with_delays("output_angle") if delayed else compared).with_unknown_begin()
+    return compared.with_delays("output_angle") if delayed else compared
 
 
 def _cutoff_of_signal(recording: Recording) -> float | None:
@@ -382,28 +378,7 @@ def _solved(
 ) -> tuple[Problem, Array]:
     """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it."""
     problem = problem_of(plan(drive, [""], free), drive, [log], [training])
-    start, paths = problem.start(), [each.path for each in problem.plan.unknowns]
-    with suppress(ValueError, FloatingPointError):  # a beginning of too few samples, or one that the model leaves
-        tuned, in_phase = _in_phase(log, drive, paths)
-        start[[*map(paths.index, tuned), *range(len(paths), len(start))]] = in_phase
-    return problem, problem.solve(start, problem.first_weights(), tolerance, trials=MAX_STEPS_OF_FIT)
-
-
-def _in_phase(log: DrivenLog, drive: Drive, free: Sequence[str]) -> tuple[list[str], Array]:
-    """Return the numbers by which the output of a drive vibrates in phase with the measured one: their paths, and the values.
-
-    The values of the unknowns of the measurement follow. A natural frequency that gains or loses a period over the record is a
-    minimum of its own, and regressions do not determine it as well as that. Over a short beginning of the record, and then a
-    longer one, the inertia or a stiffness makes up for all errors of the frequency.
-    """
-    tuned = [*[path for path in (LOAD_INERTIA, *FIRST_STIFFNESS) if path in free][:1], DAMPING_PATH]
-    known = plan(drive, [""], tuned)
-    since = (log.time - log.time[0]) / (log.time[-1] - log.time[0])
-    problems = [problem_of(known, drive, [log], [since <= share]) for share in SHARES_IN_PHASE]
-    x = problems[0].start()
-    for problem in problems:
-        x = problem.solve(x, problem.first_weights(), ROUGH_TOLERANCE, trials=MAX_STEPS_OF_FIT)
-    return [each.path for each in known.unknowns], x
+    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_STEPS_OF_FIT)
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:

@@ -38,7 +38,6 @@ CHANNEL_UNITS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_e
 MAX_DRIVEN_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
 MAX_DRIVEN_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and a quarter is noise
-UNKNOWN_BEGINS = {"torque": ("N.m", 1e-3), "output_speed": ("rad/s", 1e-4)}  # unit, and change for a derivative (assumed)
 OUTPUT_PLACES = {"output_angle", "twist"}  # initial quantities by which the output begins where it was
 END_PERIODS = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
@@ -241,7 +240,6 @@ class DrivenLog(ComparedByFields):
         dt: largest step of the simulation [s]
         held_back: torque of other bodies that holds the output back [N.m]
         delayed: names of the channels whose delay behind the input angle is an unknown
-        begins: names of the initial values that are unknowns, which begin at those of the motion
     """
 
     motion: InputMotion
@@ -254,7 +252,6 @@ class DrivenLog(ComparedByFields):
     dt: float
     held_back: Scenario | float = 0.0
     delayed: tuple[str, ...] = ()
-    begins: tuple[str, ...] = ()
 
     @classmethod
     def of(
@@ -332,11 +329,9 @@ class DrivenLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """Zeros of encoders at the output and of the motor's effort; then delays, and initial values."""
+        """Zeros of encoders at the output and of the motor's effort; then delays."""
         zeros = (Nuisance(f"{name}_zero", CHANNEL_UNITS[name], zero) for name, zero in self.zeros.items())
-        delays = (Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed)
-        begins = (Nuisance(f"initial_{name}", UNKNOWN_BEGINS[name][0], self.motion.initial[name]) for name in self.begins)
-        return (*zeros, *delays, *begins)
+        return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
 
     def with_delays(self, *channels: str) -> DrivenLog:
         """Return the same, with the delay of these channels behind the input angle as unknowns.
@@ -348,13 +343,6 @@ class DrivenLog(ComparedByFields):
             arguments.one_of("the name of a delayed channel", name, self.channels)
         return replace(self, delayed=channels)
 
-    def with_unknown_begin(self) -> DrivenLog:
-        """Return the same, with the initial torque and speed of the output as unknowns if they are given.
-
-        An output without damping vibrates for ever by what they are off.
-        """
-        return replace(self, begins=tuple(name for name in UNKNOWN_BEGINS if name in self.motion.initial))
-
     def step(self, model: Drive) -> float:
         """Return the largest step of a simulation of a model [s]."""
         return fine_enough(driven(model), self.dt, MIN_STEP_SHARE * self.dt)
@@ -365,18 +353,11 @@ class DrivenLog(ComparedByFields):
         described = _core.parameters(model)
         of_drive = [number for number in numbers if described[number][0] in places]
         names = list(outputs(moved))
-        zeros, delays, begins = np.split(nuisances, np.cumsum([len(self.zeros), len(self.delayed)]))
-        run, slopes, first = self._run(moved, [places[described[number][0]] for number in of_drive], begins)
+        run, slopes, first = self._run(moved, [places[described[number][0]] for number in of_drive])
         predicted = np.stack([self._shown(model, name, run[_measured_by(name)][first:]) for name in self.channels])
         derivatives = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
         of_known = dict(zip(of_drive, slopes, strict=True))
         torque = run["motor_torque"][first:]
-        for place, name in enumerate(self.begins):
-            change = np.zeros(len(begins))
-            change[place] = UNKNOWN_BEGINS[name][1]
-            other, *_ = self._run(moved, [], begins + change)
-            beside = np.stack([self._shown(model, each, other[_measured_by(each)][first:]) for each in self.channels])
-            derivatives[place - len(begins)] = (beside - predicted) / change[place]
         for row, name in enumerate(self.channels):
             for unknown, number in enumerate(numbers):
                 if number in of_known:
@@ -384,11 +365,11 @@ class DrivenLog(ComparedByFields):
                     derivatives[unknown, row] = rate * self._scale(model, name)
                 elif name in EFFORTS:
                     derivatives[unknown, row] = self._by_motor(model, number, name, torque)
-        moving = [*range(len(numbers)), *range(len(derivatives) - len(begins), len(derivatives))]
+        zeros, delays = np.split(nuisances, [len(self.zeros)])
         for unknown, (name, delay) in enumerate(zip(self.delayed, delays, strict=True), len(numbers) + len(zeros)):
             row = self.channels.index(name)
-            series = self._late(np.concatenate([predicted[np.newaxis, row], derivatives[moving, row]]), float(delay))
-            predicted[row], derivatives[moving, row], derivatives[unknown, row] = series[0], series[1:-1], -series[-1]
+            series = self._late(np.concatenate([predicted[np.newaxis, row], derivatives[: len(numbers), row]]), float(delay))
+            predicted[row], derivatives[: len(numbers), row], derivatives[unknown, row] = series[0], series[1:-1], -series[-1]
         for unknown, (name, zero) in enumerate(zip(self.zeros, zeros, strict=True), len(numbers)):
             predicted[self.channels.index(name)] += zero
             derivatives[unknown, self.channels.index(name)] = 1.0
@@ -396,16 +377,15 @@ class DrivenLog(ComparedByFields):
 
     def gear_torque(self, model: Drive) -> Array:
         """Return the torque that the gear transmits at the instants compared [N.m], shape (n,)."""
-        run, _, first = self._run(driven(model), [], np.array([self.motion.initial[name] for name in self.begins]))
+        run, _, first = self._run(driven(model), [])
         torque: Array = run["torque"][first:]
         return torque
 
-    def _run(self, moved: Drive, numbers: Sequence[int], begins: Array) -> tuple[Recording, Array, int]:
+    def _run(self, moved: Drive, numbers: Sequence[int]) -> tuple[Recording, Array, int]:
         """Return a run along the motion, its derivatives by numbers of the drive, and the first row compared."""
         samples = self.time if self.time[0] == 0.0 else np.append(0.0, self.time)
         acting = Excitation(self.motion.command, self.held_back)
-        initial = {**self.motion.initial, **dict(zip(self.begins, begins.tolist(), strict=True))}
-        run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, initial)
+        run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, self.motion.initial)
         return run, slopes, len(samples) - len(self.time)
 
     def _late(self, series: Array, delay: float) -> Array:
