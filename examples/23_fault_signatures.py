@@ -21,8 +21,8 @@ joint = sw.Drive(
     load=sw.loads.Inertia(inertia=0.1),
     sensors=sw.Sensors(input_angle=sw.sensor.Encoder(counts=2**17)),
 )
+severities, recorded = [0.0, 0.25, 0.5, 1.0], ["input_angle", "output_angle", "current", "voltage"]
 LINE, MEAN, VOLTAGE, REST, TWIST = "current [mA]", "mean current [A]", "voltage / current [Ω]", "offset [′]", "twist [′]"
-severities = [0.0, 0.25, 0.5, 1.0]
 faults: dict[str, tuple[Any, str, tuple[float, ...], int]] = {  # signal, orders of a line, turns recorded
     "misalignment, 30 µm": (fault.Misalignment(housing_direction=np.pi / 4.0), LINE, (2.0, 4.0), 12),
     "misalignment, 0.43°": (fault.Misalignment(housing_eccentricity=0.0, housing_tilt_x=7.5e-3), LINE, (2.0, 4.0), 12),
@@ -54,9 +54,8 @@ def measured(drive: sw.Drive, signal: str, orders: tuple[float, ...], turns: int
     """Return the signal of a drive that turns under load or rests: of lines, the amplitude of each order."""
     begin, end = (1.0, 1.0 + (turns + 0.1) * 2.0 * np.pi / speed) if turns else (2.0, 4.0)
     push = sw.scenario.sine(amplitude=5.0, frequency=0.5, duration=end) if signal == TWIST else load * bool(turns)
-    columns = ["input_angle", "output_angle", "current", "voltage"]
     command = sw.scenario.ramp(rate=speed / 100.0 * bool(turns), duration=end)
-    run = sw.simulate(drive, command, load_torque=push, sample=1.0 / rate, record=columns).between(begin, end)
+    run = sw.simulate(drive, command, load_torque=push, sample=1.0 / rate, record=recorded).between(begin, end)
     if signal == LINE:
         return list(1e3 * sw.orders.order_amplitudes(run, "current", orders).amplitude)
     if not turns:

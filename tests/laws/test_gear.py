@@ -294,7 +294,7 @@ def balance(drive: Drive, run: sw.Recording) -> tuple[Array, Array, float]:
 
 
 @pytest.mark.parametrize(("part", "model"), EVERY_PART)
-@settings(max_examples=5, suppress_health_check=[HealthCheck.filter_too_much])  # few bristles drawn are passive
+@settings(max_examples=3, suppress_health_check=[HealthCheck.filter_too_much])  # few bristles drawn are passive
 @given(data=st.data())
 def test_what_goes_into_a_gear_is_stored_or_lost(part: str, model: Any, data: st.DataObject) -> None:
     law = widened(data.draw(laws(part, model)))

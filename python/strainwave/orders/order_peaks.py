@@ -172,7 +172,7 @@ class _Order:
         if not self.left_near(fit, speed, damping) < (MAX_LEFT + LATE_SHARE * late) * fit.heights[k]:
             return f"has a peak near {number(speed * 30.0 / np.pi, 3)} 1/min that is not that of a single mode"
         damping_sigma = float(np.linalg.norm([sigma[1], damping * MIN_DAMPING_SIGMA, LATE_SHARE * late * damping]))
-        if not self.passes(speed, damping) or damping_sigma > MAX_DAMPING_SIGMA * damping:
+        if not self.passes(speed, damping) or damping_sigma > MAX_DAMPING_SIGMA * damping or sigma[0] > 0.5 * damping * speed:
             return ""
         speed_sigma = float(np.linalg.norm([sigma[0], speed * MIN_SPEED_SIGMA, LATE_SHARE * late * damping * speed]))
         return OrderPeak(self.order, 0.0, speed, speed_sigma, damping, damping_sigma, float(fit.heights[k]))

@@ -91,7 +91,12 @@ def test_a_file_without_motor_or_load_is_loaded_as_its_gear(tmp_path: Path) -> N
 COGGING = {"motor.cogging_torque": 0.0, "motor.cogging_order": 24.0}
 PHASES = {"motor.phase_resistance_excess": 0.0, "motor.dead_time_voltage": 0.0, "motor.dead_time_current": 0.1}
 # What a file may leave out of a motor, and what holds then.
-WITHOUT_EFFECT: dict[Any, dict[str, float]] = {sw.motor.DC: COGGING, sw.motor.BrushlessDC: COGGING, sw.motor.PMSM: PHASES}
+LOST_SETS = {"motor.open_share": 0.0, "motor.shorted_share": 0.0}
+WITHOUT_EFFECT: dict[Any, dict[str, float]] = {
+    sw.motor.DC: COGGING,
+    sw.motor.BrushlessDC: COGGING | LOST_SETS,
+    sw.motor.PMSM: PHASES | LOST_SETS,
+}
 
 
 @pytest.mark.parametrize("name", ["tilt-actuator", "robot-joint"])

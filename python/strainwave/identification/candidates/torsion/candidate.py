@@ -45,7 +45,6 @@ from strainwave.identification.fitting.unknowns import Estimate
 Array = NDArray[np.float64]
 FITTED_SPRINGS = (LINEAR, CUBIC, THREE_SEGMENT)
 MAX_SLIP = 0.9  # of half the span: a loop does not separate an element that slips later from a spring
-BREAKAWAY = "hysteresis.breakaway["  # in the path of the torque of an element
 MIN_SLIP_RATIO = 1.1  # of two slip twists; elements that are closer are one
 MAX_ROUNDS_OF_LEAVING_OUT = 8  # of leaving out elements; one that the loop hardly determines may come and go for ever
 MAX_MINIMA = 6  # of one kind that are fitted
@@ -346,9 +345,8 @@ def finished(
 def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring: SpringKind, dissipation: Dissipation) -> Fit:
     """Return the fit, without elements that the loop does not separate from the spring or from nothing.
 
-    An element that never slips within the loop is a linear spring, one without torque, or with less than its standard
-    deviation, is none, and two that slip at the same twist are one. One that slips earlier than the loop determines slips at
-    the smallest twist that it determines.
+    An element that never slips within the loop is a linear spring, one without torque is none, and two that slip at the same
+    twist are one. One that slips earlier than the loop determines slips at the smallest twist that it determines.
     """
     half, span = half_span(loop), float(np.ptp(loop.torque))
     least = half * (TRIED_SLIPS[0] if loop.input_ratio is None else 2.0 * PRESLIDING_SHARE)
@@ -369,8 +367,6 @@ def _refined(gear: Gear, loop: TorsionLoop, training: NDArray[np.bool_], spring:
             gear, stiff = gear.replace(stiffness=stiffened, hysteresis=maxwell(slipping)), set()
         elif _alike(slipping):
             gear, stiff = merged(refined.gear), set()
-        elif (doubtful := _doubtful(refined)) is not None:
-            gear, stiff = gear.replace(hysteresis=maxwell([*fitted[:doubtful], *fitted[doubtful + 1 :]])), set()
         elif stiffer := {i for i, (k, f) in enumerate(fitted) if f < 0.999 * least * k}:
             stiff |= stiffer
             slower = [(f / least if i in stiff else k, f) for i, (k, f) in enumerate(fitted)]
@@ -390,13 +386,6 @@ def merged(gear: Gear) -> Gear:
     (k, f), (other_k, other_f) = elements[first : first + 2]
     elements[first : first + 2] = [(k + other_k, f + other_f)]
     return gear.replace(hysteresis=maxwell(elements))
-
-
-def _doubtful(refined: Fit) -> int | None:
-    """Return the place of the element whose torque is least certain, if that is below its standard deviation."""
-    torques = {each.path: abs(each.value) / max(each.sigma, 1e-300) for each in refined.estimates if BREAKAWAY in each.path}
-    path = min(torques, key=lambda each: torques[each], default="")
-    return int(path.rpartition("[")[2].rstrip("]")) if path and torques[path] < 1.0 else None
 
 
 def _alike(elements: Sequence[tuple[float, float]]) -> bool:
