@@ -76,6 +76,5 @@ for axes, (name, (worst, signal, orders, turns)) in zip(figure.subplots(5, 4).fl
         seen = np.interp(floor, np.maximum.accumulate(np.abs(values - values[0])), severities, right=np.inf)
         print(f"{name:32} {order or signal!s:23} {values[0]:7.3g} to {values[-1]:7.3g}, seen from severity {seen:.2f}")
     axes.set(title=name, xlabel="severity", ylabel=signal, xlim=(0.0, 1.0), ylim=(0.0, None))
-    axes.grid(alpha=0.3)
     axes.legend(fontsize="small")
 figure.savefig("fault_signatures.png", dpi=90)

@@ -48,6 +48,7 @@ def number(path: str) -> FileEstimate:
     return next((each.estimate for each in found if each.source == "records at constant speed"), found[0].estimate)
 
 
+@pytest.mark.xfail(strict=True, reason="open: gravity by pairs of senses is 41.5 +- 0.8 N.m, a regression over all rows 39.3")
 @pytest.mark.slow("identification")
 def test_friction_and_gravity_are_those_of_a_regression_over_all_moving_rows() -> None:
     rows = []
@@ -59,7 +60,7 @@ def test_friction_and_gravity_are_those_of_a_regression_over_all_moving_rows() -
     table = np.concatenate(rows)
     coulomb, viscous, sine, cosine = np.linalg.lstsq(table[:, :4], table[:, 4], rcond=None)[0]
     gravity, phase = number("load.gravity_torque"), number("load.gravity_phase")
-    assert abs(gravity.value - np.hypot(sine, cosine)) < 3.0 * gravity.sigma < 0.06 * gravity.value
+    assert gravity.value == pytest.approx(np.hypot(sine, cosine), rel=0.05)
     assert phase.value == pytest.approx(np.arctan2(cosine, sine), abs=0.05)
     friction = number("steady_friction")
     speed = float(friction.law.split()[1])  # the one where it is known best
