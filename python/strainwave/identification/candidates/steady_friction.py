@@ -211,6 +211,7 @@ def _with_gravity(
 
     Gravity is one wave over the angle. Friction varies by another wave over it, which turns over with the motion; its mean over
     a stretch is the level. In motion one way the waves are one: then gravity and levels have an infinite standard deviation.
+    The deviation of gravity contains its difference to a fit whose friction does not vary over the angle.
     """
     counts, many = np.array([len(torque) for torque, _ in stretches]), len(stretches)
     angle = np.concatenate([angle for _, angle in stretches if angle is not None])
@@ -232,7 +233,8 @@ def _with_gravity(
     residuals = left_by(jacobian, found)
     covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], symmetry)
     cosine, sine = found[many : many + 2].tolist()
-    of_cosine, of_sine = np.sqrt(np.diag(covariance)[many : many + 2]).tolist()
+    shift = solved(rows[:, : many + 2], values)[many:] - found[many : many + 2]
+    of_cosine, of_sine = np.hypot(np.sqrt(np.diag(covariance)[many : many + 2]), shift).tolist()
     levels = Levels(found[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine))
     alone = np.column_stack((columns, of_friction))
     return levels, residuals, left_by(alone, solved(alone, torque))
