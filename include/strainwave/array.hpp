@@ -59,7 +59,7 @@ constexpr void size_like(const Counted<T, capacity>& elements, Others&... others
     ((others.count = elements.count), ...);
 }
 
-/// As many elements as another has, all zero.
+/// A sequence of zeros with the count of another.
 template <class T, int n>
 constexpr Array<T, n> zeros_like(const Array<T, n>&) {
     return Array<T, n>{};

@@ -1,7 +1,7 @@
 #pragma once
 #include <strainwave/math.hpp>
 
-/// What the two lobes of the wave generator load in zones: teeth, and balls of its bearing. The weight in a zone falls as 1 + cos
+/// Zones of load under the two lobes of the wave generator, of teeth and of balls of its bearing. The weight in a zone falls as 1 + cos
 /// from its middle to zero at its ends.
 namespace strainwave::lobes {
 

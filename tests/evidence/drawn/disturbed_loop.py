@@ -25,7 +25,7 @@ from tests.evidence.drawn.outcome import Outcome, compared
 Array = NDArray[np.float64]
 KINDS = {"linear": ("k",), "cubic": ("a1", "a3"), "three_segment": ("k1", "k2", "k3", "t1", "t2")}
 DISTURBANCES = ("none", "clamp", "dropouts", "ripple", "wander")
-SAMPLES = 1200
+SAMPLES_OF_LOOP = 1200
 
 
 def spring(kind: str, numbers: tuple[float, ...], twist: Array) -> Array:
@@ -83,7 +83,7 @@ def measured(seed: int) -> tuple[Recording, str, tuple[float, ...]]:
     disturbance = DISTURBANCES[seed % len(DISTURBANCES)]
     kind = list(KINDS)[seed // len(DISTURBANCES) % len(KINDS)]
     numbers, half = drawn(random, kind)
-    turn = np.linspace(0.0, 3.0, SAMPLES)
+    turn = np.linspace(0.0, 3.0, SAMPLES_OF_LOOP)
     twist = half * np.array([1.0, 0.8, 0.55])[np.minimum(turn.astype(int), 2)] * np.sin(2.0 * np.pi * turn)
     torque = spring(kind, numbers, twist)
     level = float(np.abs(torque).max())
@@ -93,7 +93,7 @@ def measured(seed: int) -> tuple[Recording, str, tuple[float, ...]]:
         torque = torque + slipping(twist, breakaway / slip, breakaway)
     twist, torque = disturbed(disturbance, twist, torque, random)
     noise = float(random.choice([1e-3, 3e-3, 1e-2]))
-    torque = torque + noise * level * random.normal(size=SAMPLES) + float(random.uniform(-0.02, 0.02)) * level
+    torque = torque + noise * level * random.normal(size=SAMPLES_OF_LOOP) + float(random.uniform(-0.02, 0.02)) * level
     twist = twist + float(random.uniform(-0.05, 0.05)) * half
     series = {"time": 20.0 * turn, "twist": twist, "torque": torque}
     return Recording(series, {"time": "s", "twist": "rad", "torque": "N.m"}), kind, numbers

@@ -23,12 +23,12 @@ from tests.evidence.flexible_ring.records import UNITS, Experiment, drawn_experi
 from tests.evidence.flexible_ring.truth import Lines
 
 MAX_FROM_WAVES = 0.25  # of the slope of an eigenline, to be that of so many waves
-NEAR = 0.1  # of the frequency: eigenlines farther from a stated mode are no candidates for it
+MAX_APART = 0.1  # of the frequency: eigenlines farther from a stated mode are no candidates for it
 
 
 @dataclass(frozen=True)
 class Crossing:
-    """Where an order meets an eigenline: slope, natural frequency [rad/s] and damping of its tangent, and the speed [rad/s]."""
+    """Crossing of an order with an eigenline: slope, natural frequency [rad/s] and damping of its tangent, and the speed [rad/s]."""
 
     slope: float
     frequency: float
@@ -67,7 +67,7 @@ def judged_mode(mode: RingMode, lines: Lines) -> Outcome:
         crossing
         for order in mode.orders
         for crossing in crossings(lines, order)
-        if abs(crossing.frequency / mode.frequency - 1.0) < NEAR
+        if abs(crossing.frequency / mode.frequency - 1.0) < MAX_APART
     ]
     outcomes = [_compared(mode, crossing) for crossing in near]
     if any(outcome.verdict == "right" for outcome in outcomes):

@@ -10,7 +10,7 @@ import numpy as np
 from tests.evidence.flexible_ring.gear import Contacts, Gear, ball_contacts, tooth_contacts
 from tests.evidence.flexible_ring.ring import Array
 
-BATCH = 256  # instants whose contacts are worked out together
+INSTANTS_AT_ONCE = 256  # instants whose contacts are computed together
 MAX_STEP = 1.0 / 15e3  # s
 SENSOR_PLACE = 0.3  # rad, on the toothed ring
 
@@ -98,8 +98,8 @@ def stepped(gear: Gear, x: Array, v: Array, duration: Array, rate: Array, vector
 
 def _springs(gear: Gear, angle: Array, torque: float) -> Iterator[tuple[Array, Array, Array]]:
     """Yield of each step frequencies [rad/s], shape (n, 1), shapes, shape (n, n), and rest in these shapes, shape (n, 1)."""
-    for begin in range(0, len(angle), BATCH):
-        stiffness, force = stiffness_and_force(gear, angle[begin : begin + BATCH], torque)
+    for begin in range(0, len(angle), INSTANTS_AT_ONCE):
+        stiffness, force = stiffness_and_force(gear, angle[begin : begin + INSTANTS_AT_ONCE], torque)
         squares, vectors = np.linalg.eigh(stiffness)
         centre = np.einsum("ikm,ik->im", vectors, force) / squares
         yield from zip(np.sqrt(squares)[..., np.newaxis], vectors, centre[..., np.newaxis], strict=True)

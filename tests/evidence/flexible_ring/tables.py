@@ -1,4 +1,4 @@
-"""What an engineer brings from finite elements: tables of the mesh and of the modes."""
+"""Tables of finite elements: the mesh and the modes of a flexible ring."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tests.evidence.flexible_ring.ring import Array
 
 Table = dict[str, Array]
 MODES_COLUMNS = "frequency [Hz]", "waves [1]", "damping_ratio [1]", "mass_at_mesh [kg]"
-FINER = 12  # contacts in the place of a ball
+CONTACTS_PER_BALL = 12  # contacts in the place of a ball
 LARGEST_MASS = 1e3  # kg; modes that move the mesh less are not listed
 
 
 def with_even_bearing(gear: Gear) -> Gear:
     """Return a gear whose bearing is as stiff all the way, as a bearing without balls in finite elements."""
-    count = FINER * gear.balls
-    return replace(gear, balls=count, ball_stiffness=gear.ball_stiffness / FINER, ball_sizes=np.zeros(count))
+    count = CONTACTS_PER_BALL * gear.balls
+    return replace(gear, balls=count, ball_stiffness=gear.ball_stiffness / CONTACTS_PER_BALL, ball_sizes=np.zeros(count))
 
 
 def mesh_table(gear: Gear, angle: Array, torque: Array) -> Table:

@@ -24,7 +24,7 @@ from strainwave.messages import listed, quoted
 from strainwave.typeset import percent, quantity
 
 Array = NDArray[np.float64]
-CYCLES = 2.0  # of a loop: the first ends transients of bristles
+CYCLES_OF_LOOP = 2.0  # of a loop: the first ends transients of bristles
 MIN_GAIN_OF_SHARE = 1e-6  # relative, of a standard deviation: rounding below it
 WARMING_TIME = 1800.0  # s until a gear has another temperature throughout (assumed)
 ALL_SOURCES = "loss"
@@ -120,7 +120,7 @@ def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: fl
 def _duration(loop: LossLoop, temperature: float) -> float:
     """Return the time of a loop [s], with that until the gear has its temperature."""
     travel = 2.0 * (loop.ends[1] - loop.ends[0])
-    cycles = CYCLES * travel / loop.speed if loop.is_timed else USUAL_DURATIONS["torsion"]
+    cycles = CYCLES_OF_LOOP * travel / loop.speed if loop.is_timed else USUAL_DURATIONS["torsion"]
     return cycles + (WARMING_TIME if loop.temperature > temperature else 0.0)
 
 

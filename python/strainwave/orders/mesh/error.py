@@ -24,9 +24,9 @@ MIN_WINDUP_OF_ORDERS = 0.02  # of the largest amplitude, likewise
 MIN_WINDUP_OF_STIFFNESS = 0.05  # of the twist by the column stiffness, likewise
 MAX_DISAGREEMENT = 0.25  # relative, of the column stiffness and the slope of the error: a larger one is a mistake
 NAMED_SPREAD = 0.02  # relative, from which a change with the load is stated
-CONVERGED = 1e-11  # relative change in a round
+MAX_CHANGE_OF_ROUND = 1e-11  # relative change in a round
 MAX_ITERATIONS = 100  # of the twist under an error that falls
-ROUNDS = 20  # of the corrections beyond the first order
+MAX_ROUNDS = 20  # of the corrections beyond the first order
 POINTS_PER_PERIOD = 4  # of the highest order that may vary, at which they are computed
 MIN_POINTS = 1024  # per turn
 
@@ -124,7 +124,7 @@ def error_fit(
     kept, wound = error.significant(false_alarm), winds_up(error, of_spring)
     varying = given or StiffnessVariation(np.zeros(len(kept), complex), None, ())
     shift, beyond, before = np.zeros(len(error.torque)), np.zeros_like(error.waves), None
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         spring = _spring(error, of_spring, wound, shift)
         compliance = spring.compliance(error.torque)[loads] if spring is not None and given is None else None
         fit = load_fit(error.torque[loads], compliance, np.where(kept, error.waves - beyond, 0.0)[loads], error.noise)
@@ -133,7 +133,7 @@ def error_fit(
         now = np.concatenate([fit.error, fit.variation])
         if spring is None or (varying.law is None and fit.sensitivity == 0.0):
             break
-        if before is not None and np.allclose(now, before, rtol=CONVERGED, atol=0.0):
+        if before is not None and np.allclose(now, before, rtol=MAX_CHANGE_OF_ROUND, atol=0.0):
             break
         before = now
         shift, beyond = _beyond_first_order(spring, error, fit.error, fit.sensitivity, varying)
@@ -195,7 +195,7 @@ def transmission_error(law: Any, error: Array, sensitivity: float, factor: Array
         fall = 1.0 / (1.0 + sensitivity * np.abs(spring))
         per_twist = -error * sensitivity * np.sign(spring) * fall**2 * np.asarray(law.tangent(twist))
         before, twist = twist, np.asarray(law.twist(torque * (1.0 + per_twist) / factor))
-        if np.abs(twist - before).max() <= CONVERGED * np.abs(twist).max():
+        if np.abs(twist - before).max() <= MAX_CHANGE_OF_ROUND * np.abs(twist).max():
             break
     return np.asarray(error * fall + twist)
 

@@ -119,7 +119,7 @@ def _law(slopes: Array, knees: Sequence[float]) -> stiffness.Linear | stiffness.
 
 @dataclass(frozen=True)
 class LoadFit:
-    """How the orders change with the load.
+    """Change of the orders with the load.
 
     Attributes:
         error: complex amplitudes of the error without load [rad], shape (h,)
