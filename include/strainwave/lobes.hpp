@@ -1,8 +1,8 @@
 #pragma once
 #include <strainwave/math.hpp>
 
-/// Zones of load under the two lobes of the wave generator, of teeth and of balls of its bearing. The weight in a zone falls as 1 + cos
-/// from its middle to zero at its ends.
+/// Zones of load under the two lobes of the wave generator, of teeth and of balls of its bearing. The weight in a zone falls
+/// as 1 + cos from its middle to zero at its ends.
 namespace strainwave::lobes {
 
 /// sin(x) / x.

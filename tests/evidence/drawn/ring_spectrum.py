@@ -28,7 +28,7 @@ MAX_APART = 0.1  # of the frequency: eigenlines farther from a stated mode are n
 
 @dataclass(frozen=True)
 class Crossing:
-    """Crossing of an order with an eigenline: slope, natural frequency [rad/s] and damping of its tangent, and the speed [rad/s]."""
+    """Crossing of an order with an eigenline: slope, frequency [rad/s] and damping of its tangent, and the speed [rad/s]."""
 
     slope: float
     frequency: float

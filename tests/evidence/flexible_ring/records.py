@@ -1,4 +1,4 @@
-"""Records of a flexible ring: angles of both encoders, and an accelerometer, at constant speeds or along run-ups, with noise."""
+"""Records of a flexible ring: both encoders, and an accelerometer, at constant speeds or along run-ups, with noise."""
 
 from __future__ import annotations
 
