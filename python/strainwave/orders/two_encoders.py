@@ -291,8 +291,8 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
         remarks.append(f"the samples do not follow {_named(missed)} at this speed; record faster, or turn slower")
     if missed := [f"{order:g}" for order in wanted if order < min(lowest, highest)]:
         remarks.append(
-            f"{_named(missed)} not determined: an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the input, which "
-            f"turns {turns_in:.2g} revolutions"
+            f"not determined: {_named(missed)}; an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the input, "
+            f"which turns {turns_in:.2g} revolutions"
         )
     if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")
