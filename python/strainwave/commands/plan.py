@@ -142,7 +142,9 @@ def _loops(files: Sequence[Path], gear: Gear) -> list[Recognised]:
     Raises:
         ValueError: a file is no loop, or two contain the same measurement
     """
-    from strainwave.identification.experiments.loss_loop import LossLoop
+    from dataclasses import replace
+
+    from strainwave.identification.kinds.torsion_loop import lossy_loop
     from strainwave.identification.reading.mapping import FileMapping
     from strainwave.identification.reading.recognise import recognise
     from strainwave.identification.reading.several_files import same_as
@@ -151,8 +153,8 @@ def _loops(files: Sequence[Path], gear: Gear) -> list[Recognised]:
     loops = []
     for file in files:
         try:
-            loop = recognise(file, FileMapping(kind="torsion")).at_ratio(gear.kinematics.ratio)
-            LossLoop.of(loop.recording, gear)
+            loop = recognise(file, FileMapping(kind="torsion"))
+            loop = replace(loop, recording=lossy_loop(loop, gear))
         except QuestionError as question:
             names = "call the columns twist [rad] and torque [N.m], or input_angle and input_torque, with the unit of each"
             raise ValueError(_of_file(file, f"{question.question}; {names}")) from None
