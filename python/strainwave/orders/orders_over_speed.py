@@ -19,7 +19,8 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.recording import Recording
+from strainwave import arguments
+from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.turning import evenly, reach_of, smooth_speed, unwrapped
@@ -135,6 +136,17 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
         turns = convert(series[[0, -1]], recording.unit(column), "rad")
         per_input = float(abs((turns[1] - turns[0]) / (turned[part][-1] - turned[part][0])))
     return Turning(np.asarray(time), sense * turned[part], sense * speed[part], series, per_input, remarks)
+
+
+def turning_of(recordings: Recording | Sequence[Recording], column: str, angle: str) -> tuple[list[Turning], str]:
+    """Return the parts of one or several recordings in which the shaft turns one way, and the unit of the column."""
+    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    if not given:
+        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
+    for recording in given:
+        check_recording("recordings", recording)
+    names = arguments.text("column", column), arguments.text("angle", angle)
+    return [turning_one_way(recording, *names) for recording in given], given[0].unit(column)
 
 
 def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:

@@ -23,9 +23,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT
+from strainwave.drawing.simple import Series
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
+from strainwave.files.recording import Recording
 from strainwave.messages import listed
 from strainwave.orders.bearing_candidates import BearingCandidates, bearing_candidates
 from strainwave.orders.order_peaks import OrderPeak, peaks_of
@@ -33,10 +33,11 @@ from strainwave.orders.orders_over_speed import (
     OrderLine,
     OrdersOverSpeed,
     orders_over_speed,
-    turning_one_way,
+    turning_of,
     uneven_orders,
     whole_orders,
 )
+from strainwave.orders.tracked_orders import PANEL_HEIGHT, OrderTracks, draw_orders
 from strainwave.orders.turning import reach_of, smooth_speed
 from strainwave.presentation import Pictured, Row
 from strainwave.typeset import number, uncertain
@@ -63,8 +64,6 @@ MAX_CHANCE = 0.05  # probability that peaks of different modes lie on such a lin
 MAX_BEND = 5e-4  # of the frequency, by which lines are not straight (assumed)
 MIN_BREADTH = 0.03  # share of the speed by which the peaks of a line must differ
 MIN_DAMPING_SIGMA = 0.01  # of the damping: forces are not quite constant along a peak (assumed)
-FIGURE_HEIGHT = 1.7  # inches of an order
-MAX_DRAWN_ORDERS = 6
 
 
 @dataclass(frozen=True)
@@ -185,12 +184,7 @@ def ring_modes(
     >>> [(mode.waves, round(mode.frequency), len(mode.peaks)) for mode in found.modes]
     [(2, 500, 3)]
     """
-    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
-    if not given:
-        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
-    for recording in given:
-        check_recording("recordings", recording)
-    turning = [turning_one_way(each, arguments.text("column", column), arguments.text("angle", angle)) for each in given]
+    turning, unit = turning_of(recordings, column, angle)
     uneven = uneven_orders(turning) if orders is None else []
     if orders is None:
         whole = [
@@ -212,7 +206,7 @@ def ring_modes(
         spectrum.amplitude,
         curves,
         column,
-        given[0].unit(column),
+        unit,
         _bearing(uneven, float(np.median([each.per_input for each in turning]))) if uneven else None,
         tuple(dict.fromkeys(each for each in (*remarks, *more, *_alone(peaks, modes)) if each)),
     )
@@ -419,25 +413,19 @@ def modes_figure(modes: RingModes) -> Figure:
     """Return the figure of a `RingModes`, as its `plot` describes it."""
     if not modes.orders:
         raise ValueError("no order was followed")
-    with marks.new_figure(0.8 + FIGURE_HEIGHT * min(len(modes.orders), MAX_DRAWN_ORDERS), "Orders over the speed") as figure:
+    with marks.new_figure(PANEL_HEIGHT, "Orders over the speed") as figure:
         draw_modes(figure, modes)
     return figure
 
 
 def draw_modes(figure: Figure, modes: RingModes) -> None:
     """Draw the amplitude of each order over the speed, with the model and the peaks of modes."""
-    size = np.nanmax(np.abs(modes.amplitude), axis=1)
-    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
-    place = np.argsort(modes.speed, kind="stable")
-    rpm = modes.speed[place] * 30.0 / np.pi
-    panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, k in zip(panels, drawn, strict=True):
-        axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
-        marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="model")
-        for peak in (peak for mode in modes.modes for peak in mode.peaks):
-            if peak.order == modes.orders[k]:
-                axes.axvline(peak.speed * 30.0 / np.pi, color=LIGHT["muted"], linestyle="--", linewidth=0.8)
-        axes.set_ylim(bottom=0.0)
-        marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
-    marks.label_abscissa(panels[-1], "speed [1/min]", "1")
-    marks.legend(figure, panels[0])
+    along = np.argsort(modes.speed, kind="stable")
+    tracks = OrderTracks(
+        np.array(modes.orders), modes.speed[along], np.abs(modes.amplitude[:, along]), modes.column, modes.unit
+    )
+    confirmed = [peak for mode in modes.modes for peak in mode.peaks]
+    peaks = [[peak.speed * 30.0 / np.pi for peak in confirmed if peak.order == order] for order in modes.orders]
+    draw_orders(
+        figure, tracks, Series("speed [1/min]", "1", tracks.speed * 30.0 / np.pi), peaks, np.abs(modes.fitted[:, along])
+    )
