@@ -19,7 +19,8 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.recording import Recording
+from strainwave import arguments
+from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
 from strainwave.messages import listed
 from strainwave.orders.turning import evenly, reach_of, smooth_speed, unwrapped
@@ -39,7 +40,6 @@ TREND_POWERS = 3  # of the angle in a stretch: constant, rate, and a change of t
 MAX_WAVE_STEP = 0.8 * np.pi  # rad of an order between samples
 WAVE_COLUMNS = 4  # of an order in a stretch: both parts, and their change
 MAX_WHOLE_ORDER = 32
-MAX_FOLLOWED = 8  # orders, the strongest ones
 MIN_ORDER = 0.3  # of the shaft: slower ones are drifts
 MAX_LOOKED_FOR = 64  # order, up to which a spectrum is searched if none are named
 MAX_SEARCHED_STEP = 0.4 * np.pi  # rad of an order between samples, as the spectrum interpolates
@@ -136,6 +136,17 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
         turns = convert(series[[0, -1]], recording.unit(column), "rad")
         per_input = float(abs((turns[1] - turns[0]) / (turned[part][-1] - turned[part][0])))
     return Turning(np.asarray(time), sense * turned[part], sense * speed[part], series, per_input, remarks)
+
+
+def turning_of(recordings: Recording | Sequence[Recording], column: str, angle: str) -> tuple[list[Turning], str]:
+    """Return the parts of one or several recordings in which the shaft turns one way, and the unit of the column."""
+    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    if not given:
+        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
+    for recording in given:
+        check_recording("recordings", recording)
+    names = arguments.text("column", column), arguments.text("angle", angle)
+    return [turning_one_way(recording, *names) for recording in given], given[0].unit(column)
 
 
 def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:

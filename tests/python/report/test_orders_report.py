@@ -8,7 +8,7 @@ from strainwave.orders.ring_modes import RingModes
 from strainwave.report.orders import orders_report, orders_summary
 
 NONE = np.zeros((0, 1), complex)
-MODES = RingModes((), (), (), np.array([10.0]), NONE, NONE, "output_angle", "rad", None, ())
+MODES = RingModes((), (), np.array([10.0]), NONE, NONE, "output_angle", "rad", None, ())
 EACH = [OrdersFound(f"speed_{place}.csv", None, None, ("deg is assumed", f"at speed {place}")) for place in range(12)]
 TOGETHER = OrdersFound("12 recordings together", None, None, modes=MODES)
 
