@@ -90,7 +90,7 @@ def plan(
                   "speed-limit": speed_limit, "lowest-speed": lowest_speed, "torque-limit": torque_limit}  # fmt: skip
         _check_alone(experiment, [name for name, value in others.items() if value])
         gear, seconds = GearSet.read(start).gear, 60.0 * number("--minutes", minutes, low=0.0)
-        print(plan_loops([_loop(each, gear) for each in loop], gear, want, time=seconds))
+        print(plan_loops([_loop(file, gear) for file in loop], gear, want, time=seconds))
         return
 
     def in_si(option: str, given: str | None, unit: str) -> float | None:
@@ -116,7 +116,7 @@ def plan(
 
 def _check_alone(experiment: list[str] | None, options: list[str]) -> None:
     """Raise ValueError for options that a plan of loops does not use."""
-    if any(each != "torsion" for each in experiment or ()):
+    if any(kind != "torsion" for kind in experiment or ()):
         raise ValueError("--loop plans torsion loops; leave out other experiments")
     if options:
         raise ValueError(f"--loop plans by the loops that were measured, up to their torque; leave out --{options[0]}")

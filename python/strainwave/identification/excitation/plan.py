@@ -172,7 +172,9 @@ class ExperimentPlan(Pictured):
         """
         from strainwave.drawing.simple import bars_figure
 
-        determined = [each for each in self.expectations if np.isfinite(each.after / each.value if each.value else np.nan)]
+        determined = [
+            wanted for wanted in self.expectations if np.isfinite(wanted.after / wanted.value if wanted.value else np.nan)
+        ]
         if not determined:
             raise ValueError("the plan determines no parameter, so there is nothing to draw")
         before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in determined]
