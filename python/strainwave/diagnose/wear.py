@@ -23,12 +23,14 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented, Row
 from strainwave.simulation.usage import work_in
-from strainwave.typeset import quantity
+from strainwave.typeset import quantity, uncertain_quantity
 
 Array = NDArray[np.float64]
 
 QUANTITY_UNITS = {"play": "rad", "amplitude": "rad", "friction": "N.m", "stiffness": "N.m/rad"}  # of ToothWear
 MIN_TESTS = 3  # of which a line leaves one degree of freedom for its noise
+MAX_TESTS = 10_000  # of one gear; a longer table is a log, whose rows are not independent
+MAX_EXTRAPOLATION = 5.0  # of the life over the work between the tests, from which it is stated (assumed)
 MAX_SOFTENING = 0.95  # of `fault.ToothWear`
 
 
@@ -199,20 +201,26 @@ def wear_life(
         _trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence, steps[name]) for name in tests
     )
     first = min(trends, key=lambda trend: trend.remaining)
-    remarks = tuple(
-        f"the rate of the {trend.name}, {trend.rate:.2g} ± {trend.rate_sigma:.1g} {QUANTITY_UNITS[trend.name]}/J, does not "
-        "differ from zero in the direction of its limit: more tests, or tests after more work, determine it"
-        for trend in trends
-        if not trend.determined
-    )
     return WearLife(
         trends,
         first.name if isfinite(first.remaining) else "",
         first.remaining,
         min(trend.low for trend in trends),
         min(trend.high for trend in trends),
-        remarks,
+        tuple(_remarks(trends, first.remaining, float(np.ptp(done)))),
     )
+
+
+def _remarks(trends: Sequence[WearTrend], remaining: float, tested: float) -> Iterator[str]:
+    """Yield what the tests do not determine."""
+    for trend in trends:
+        if not trend.determined:
+            rate = uncertain_quantity(1e6 * trend.rate, 1e6 * trend.rate_sigma, f"{QUANTITY_UNITS[trend.name]}/MJ")
+            not_determined = f"the rate of the {trend.name}, {rate}, does not differ from zero in the direction of its limit"
+            yield f"{not_determined}: more tests, or tests after more work, determine it"
+    if isfinite(remaining) and remaining > MAX_EXTRAPOLATION * tested:
+        longer = f"{remaining / tested:.2g} times the work between the first and the last test, {quantity(tested, 'J')}"
+        yield f"the life is {longer}: that wear stays in proportion to the work so long is assumed, not tested; check the limit"
 
 
 def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[str, float]) -> None:
@@ -225,7 +233,9 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         if len(values) != len(work):
             raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for each")
     if len(work) < MIN_TESTS:
-        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests; there are {len(work)}: test again")
+        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests, not {len(work)}: test again")
+    if len(work) > MAX_TESTS:
+        raise ValueError(f"there are {len(work)} tests, at most {MAX_TESTS} are taken; give one row for each test, not a log")
     if float(np.ptp(work)) == 0.0:
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
 

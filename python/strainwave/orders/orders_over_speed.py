@@ -40,7 +40,6 @@ TREND_POWERS = 3  # of the angle in a stretch: constant, rate, and a change of t
 MAX_WAVE_STEP = 0.8 * np.pi  # rad of an order between samples
 WAVE_COLUMNS = 4  # of an order in a stretch: both parts, and their change
 MAX_WHOLE_ORDER = 32
-MAX_FOLLOWED = 8  # orders, the strongest ones
 MIN_ORDER = 0.3  # of the shaft: slower ones are drifts
 MAX_LOOKED_FOR = 64  # order, up to which a spectrum is searched if none are named
 MAX_SEARCHED_STEP = 0.4 * np.pi  # rad of an order between samples, as the spectrum interpolates

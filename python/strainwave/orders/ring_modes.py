@@ -6,7 +6,8 @@ Order q of the shaft has the frequency :math:`q \Omega`. A mode is a line over t
 
 with a point at each peak i of an order. A mode that stands against the lobes of the wave generator has the slope s = 0, one
 with n waves that goes round freely has s = n and s = -n; lobes that hold it in part make slopes between. Two peaks determine a
-line, and a third one shows whether it is one. The slope is stated as waves if it is a whole number.
+line, and a third one shows whether it is one. The slope is stated as waves if it is a whole number. A peak on no line is not
+stated: its order alone does not show whether it is that of one mode, of two, or of an order close by.
 """
 
 from __future__ import annotations
@@ -98,11 +99,10 @@ class RingMode:
 
 @dataclass(frozen=True, eq=False)
 class RingModes(ComparedByFields, Pictured):
-    """Peaks of orders over the speed, and the modes that explain them.
+    """Modes that several orders pass over the speed.
 
     Attributes:
         modes: the lowest frequency first
-        peaks: of all orders, those of no mode as well
         orders: that were followed [1]
         speed: of the shaft in each stretch [rad/s], shape (k,)
         amplitude: of the orders [unit of the column], where the angle is 0 as of a cosine, shape (orders, k)
@@ -114,7 +114,6 @@ class RingModes(ComparedByFields, Pictured):
     """
 
     modes: tuple[RingMode, ...]
-    peaks: tuple[OrderPeak, ...]
     orders: tuple[float, ...]
     speed: Array
     amplitude: Complex
@@ -133,13 +132,11 @@ class RingModes(ComparedByFields, Pictured):
         yield Row("orders followed", listed([number(q, 5) for q in self.orders]) or "none")
         for place, mode in enumerate(self.modes, 1):
             yield Row(f"mode {place}", words_of(mode))
-        for peak in self.peaks:
-            yield Row(f"order {number(peak.order, 5)}", words_of_peak(peak))
         if self.bearing is not None:
             yield Row("bearing", self.bearing._headline())
 
     def plot(self) -> Figure:
-        """Return a figure of the amplitude of each order over the speed, with the model and the peaks."""
+        """Return a figure of the amplitude of each order over the speed, with the model and the peaks of modes."""
         return modes_figure(self)
 
 
@@ -150,10 +147,10 @@ def ring_modes(
     angle: str = "input_angle",
     orders: ArrayLike | None = None,
 ) -> RingModes:
-    """Return the peaks that orders of a column have over the speed, and the modes that explain them.
+    """Return the modes that orders of a column pass over the speed, as far as peaks of several orders determine them.
 
     Two orders that meet a mode determine its line: frequency and waves. With one order alone the waves, and so the frequency,
-    stay open, and the peak is stated alone. A sensor that stands, as an accelerometer, meets each order at its own frequency,
+    stay open, and a remark names the order. A sensor that stands, as an accelerometer, meets each order at its own frequency,
     whatever the waves: its lines have no slope.
 
     Args:
@@ -164,8 +161,8 @@ def ring_modes(
         orders: of the wave generator to follow [1], shape (n,); by default those that stand out, the eight strongest
 
     Returns:
-        Peaks and modes with standard deviations. A peak is stated only if the speeds pass it from well below to well above; a
-        line of two peaks only if its slope is a whole number more exactly than chance would have it.
+        Modes with standard deviations. A peak takes part only if the speeds pass it from well below to well above; a line of
+        two peaks is stated only if its slope is a whole number more exactly than chance would have it.
 
     Raises:
         TypeError: an argument is not of its kind
@@ -204,7 +201,6 @@ def ring_modes(
     modes = _modes(peaks, column in STANDING_COLUMNS)
     return RingModes(
         modes,
-        tuple(peaks),
         tuple(spectrum.orders.tolist()),
         spectrum.speed,
         spectrum.amplitude,
@@ -387,15 +383,14 @@ def _mode(line: _Line) -> RingMode:
 
 
 def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
-    """Return a remark on the peaks through which no line is determined."""
+    """Return a remark on the orders with peaks through which no line is determined."""
     of_modes = [peak for mode in modes for peak in mode.peaks]
-    alone = [peak for peak in peaks if peak not in of_modes]
+    alone = dict.fromkeys(number(peak.order, 5) for peak in peaks if peak not in of_modes)
     if not alone:
         return []
-    each = listed([f"{number(peak.order, 5)} at {number(peak.speed * 30.0 / np.pi, 4)} 1/min" for peak in alone])
     return [
-        f"peaks of order {each}: frequency and waves of the modes that they meet are not separable; a mode with n waves has "
-        "|q - n| or q + n times the speed of the peak. A second order q that meets it separates them"
+        f"order{'s' * (len(alone) > 1)} {listed(list(alone))} may pass a mode: no other order confirms it, and its frequency "
+        "and waves are not separable. A second order that passes it, or a slower run-up, separates them"
     ]
 
 
@@ -414,12 +409,6 @@ def words_of(mode: RingMode) -> str:
     return f"{frequency}{waves}, damping ratio {uncertain(mode.damping, mode.damping_sigma)}; peaks of orders {orders}"
 
 
-def words_of_peak(peak: OrderPeak) -> str:
-    """Return a peak in words."""
-    speed = uncertain(peak.speed * 30.0 / np.pi, peak.speed_sigma * 30.0 / np.pi)
-    return f"peak at {speed} 1/min, damping ratio {uncertain(peak.damping, peak.damping_sigma)}"
-
-
 def modes_figure(modes: RingModes) -> Figure:
     """Return the figure of a `RingModes`, as its `plot` describes it."""
     if not modes.orders:
@@ -430,12 +419,13 @@ def modes_figure(modes: RingModes) -> Figure:
 
 
 def draw_modes(figure: Figure, modes: RingModes) -> None:
-    """Draw the amplitude of each order over the speed, with the model and the peaks."""
+    """Draw the amplitude of each order over the speed, with the model and the peaks of modes."""
     along = np.argsort(modes.speed, kind="stable")
     tracks = OrderTracks(
         np.array(modes.orders), modes.speed[along], np.abs(modes.amplitude[:, along]), modes.column, modes.unit
     )
-    peaks = [[peak.speed * 30.0 / np.pi for peak in modes.peaks if peak.order == order] for order in modes.orders]
+    confirmed = [peak for mode in modes.modes for peak in mode.peaks]
+    peaks = [[peak.speed * 30.0 / np.pi for peak in confirmed if peak.order == order] for order in modes.orders]
     draw_orders(
         figure, tracks, Series("speed [1/min]", "1", tracks.speed * 30.0 / np.pi), peaks, np.abs(modes.fitted[:, along])
     )

@@ -142,4 +142,4 @@ def draw_orders(
         marks.label_axes(axes, f"order {typeset.number(tracks.order[place], 5)}", tracks.unit)
     marks.label_abscissa(panels[-1], speed.name, speed.unit)
     if model is not None:
-        marks.legend(figure, panels[0], below=True)
+        marks.legend(figure, panels[0])

@@ -274,6 +274,10 @@ def _pair(recording: Recording, load: str | None, rate: float | None) -> Pair:
     return Pair(record, *angles)
 
 
+def _named(orders: Sequence[str]) -> str:
+    return f"order{'s' * (len(orders) > 1)} {listed(orders)}"
+
+
 def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tuple[list[tuple[float, Shaft]], list[str]]:
     """Return the orders that the record determines, and remarks on those that it does not."""
     if ratio.in_joint_units and given is None:
@@ -284,11 +288,11 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     chosen: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
-        remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
+        remarks.append(f"the samples do not follow {_named(missed)} at this speed; record faster, or turn slower")
     if missed := [f"{order:g}" for order in wanted if order < min(lowest, highest)]:
         remarks.append(
-            f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
-            f"turn, and it turns {turns_in:.2g} revolutions"
+            f"not determined: {_named(missed)}; an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the input, "
+            f"which turns {turns_in:.2g} revolutions"
         )
     if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")

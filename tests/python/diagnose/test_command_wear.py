@@ -40,7 +40,7 @@ def worn(work: float, folder: Path, source: str = "identified from loop.csv") ->
 
 def test_the_example_of_the_page_prints_what_the_page_has(tmp_path: Path) -> None:
     section = PAGE.read_text().partition("### Wear from files")[2]
-    (tmp_path / "wear.csv").write_text(section.partition("```csv\n")[2].partition("```")[0])
+    (tmp_path / "wear.csv").write_text(section.partition("```text\n")[2].partition("```")[0])
     command, _, printed = section.partition("```console\n$ ")[2].partition("```")[0].partition("\n")
     done = strainwave(*shlex.split(command)[1:], folder=tmp_path)
     assert done.returncode == 0, done.stderr

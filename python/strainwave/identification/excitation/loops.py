@@ -141,6 +141,7 @@ def _expectations(further: FurtherLoops, covariance: Array, wanted: Sequence[str
     measured = {share.name: (share.share, share.sigma) for share in further.shares.shares}
     for place, name in enumerate(further.sources):
         value, before = measured.get(name, (np.nan, np.inf))
+        value = value if before <= MAX_SHARE_SIGMA else np.nan  # the loops so far divide a sum in some way
         sigma, after = float(np.sqrt(covariance[place, place])), before
         if sigma < (1.0 - MIN_GAIN_OF_SHARE) * np.sqrt(further.covariance[place, place]):
             after = min(float(np.hypot(sigma, further.floors[place])), before)

@@ -48,7 +48,9 @@ class TwoEncoders(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         angles = measured(columns, "angle")
         if len(angles) != 2:
-            raise QuestionError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
+            more = "; leave the others out, with --column unused=PLACE, by the place in the file"
+            there = f"it has {names_of(columns)}{more if len(angles) > 2 else ''}"
+            raise QuestionError(f"a record of two encoders needs two angles; {there}")
         fast, slow, why_side = sides_of_angles(angles)
         why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
         by_channel = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}

@@ -115,7 +115,7 @@ def pictures_figure(pictures: Sequence[Picture], title: str) -> Figure:
     with marks.new_figure(FIGURE_HEIGHT * len(pictures), title) as figure:
         parts = np.atleast_1d(np.array(figure.subfigures(len(pictures), 1)))
         for part, picture in zip(parts, pictures, strict=True):
-            marks.legend(part, draw_picture(part, picture), below=True)
+            marks.legend(part, draw_picture(part, picture))
     return figure
 
 
@@ -301,5 +301,5 @@ def spectrum_figure(experiment: Experiment, residuals: Array, title: str) -> Fig
                 axis.loglog(frequency, amplitude, color=LIGHT[colour], linewidth=1.0, label=label)
             marks.label_axes(axis, f"amplitude of {channel.replace('_', ' ')}", unit)
         marks.label_abscissa(axes[-1], "frequency", "Hz")
-        marks.legend(figure, axes[0], below=True)
+        marks.legend(figure, axes[0])
     return figure
