@@ -125,7 +125,10 @@ def error_fit(error: Harmonics, column: Harmonics | None, given: Any, loads: sli
         shift, beyond = _beyond_first_order(fit, error, varies=column is None)
     by_noise = error.noise * np.sqrt(log(error.waves.size / false_alarm) / len(chosen))
     least = max(by_noise, RELATIVE_NOISE * float(np.abs(fit.error).max()))
-    return replace(fit, error=np.where(np.abs(fit.error) < least, 0.0, fit.error))
+    shown = np.where(np.abs(fit.error) < least, 0.0, fit.error)
+    made = (np.abs(beyond[loads]).max(axis=0) > error.noise) & (shown == 0.0)
+    unlike = np.sqrt(np.mean(np.abs((error.waves - beyond)[loads][:, made]) ** 2, axis=0)).max(initial=0.0)
+    return replace(fit, error=shown, orders=replace(orders, unlike=float(unlike / max(np.abs(shown).max(initial=0.0), 1e-300))))
 
 
 def _beyond_first_order(fit: ErrorFit, data: Harmonics, *, varies: bool) -> tuple[Array, Complex]:

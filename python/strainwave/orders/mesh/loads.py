@@ -50,6 +50,8 @@ class LoadFit:
         columns: of the error and, in a model with it, of the variation of the stiffness over the loads, shape (m, 1 or 2)
         coefficients: complex amplitudes of both [rad] and [1], shape (1 or 2, h)
         remarks: in words
+        unlike: share of the largest order by which the data differ from the laws at orders that the laws make of others: the
+            form of the laws is off by as much, also where it is not seen [1]
     """
 
     data: Harmonics
@@ -58,6 +60,7 @@ class LoadFit:
     columns: Array
     coefficients: Complex
     remarks: tuple[str, ...] = ()
+    unlike: float = 0.0
 
     @cached_property
     def left(self) -> Complex:
@@ -100,7 +103,8 @@ class LoadFit:
         # A fall in common takes the noise out of one order; it is in all, so a lower one of them shows it.
         shown = of_order[self.coefficients[0] != 0.0].tolist() or [0.0]
         level = float(np.quantile(shown, NOISE_QUANTILE, method="lower"))
-        scatter = np.maximum(max(self.data.noise, level), of_order)
+        form = self.unlike * np.abs(self.coefficients[0])
+        scatter = np.max([np.full_like(of_order, max(self.data.noise, level)), form, of_order], axis=0)
         of_orders = np.outer(np.sqrt(np.diag(np.linalg.inv(self.columns.T @ self.columns))), scatter)
         if not self.falls:
             return 0.0, of_orders

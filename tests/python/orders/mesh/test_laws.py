@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -122,6 +123,16 @@ def test_standard_deviations_contain_what_the_law_leaves(loads: list[float]) -> 
     if loads[0] < 0.0:
         assert laws.sensitivity_sigma > 0.02 * laws.kinematic_error.load_sensitivity
     assert thirtieth.sigma < 0.6 * thirtieth.amplitude
+
+
+def test_deviations_contain_the_form_where_the_loads_do_not_test_it() -> None:
+    """An error that falls as (1 + k |T|)^-2, whatever the spring does, is none of a gear whose energy is conserved."""
+    at, torque = (each.ravel() for each in np.meshgrid(TURN, [-40.0, 0.0, 40.0]))
+    error = np.asarray(ERROR.error(at)) / (1.0 + 0.005 * np.abs(torque)) ** 2
+    laws = sw.orders.mesh_laws(MeshTable(at, torque, transmission_error=error + torque / 3e4, source="mesh.csv"))
+    assert laws.residual > 5e-8
+    assert all(order.sigma > 0.25 * laws.residual for order in laws.orders)
+    assert laws.sensitivity_sigma * 2.0 * 40.0 * 3e-4 > 0.5 * laws.residual
 
 
 def test_deviations_of_a_small_table_are_those_of_its_noise() -> None:
@@ -486,6 +497,15 @@ def test_what_needs_stages_is_refused_without_them() -> None:
         sw.orders.mesh_laws(table(BOTH_SENSES)).applied_to("hfuc-25-100", modes=MODES)
     with pytest.raises(ValueError, match=r"the stages alone have a compliance of .*give stiffer stages"):
         laws.applied_to("hfuc-25-100", stages=STAGES.replace(circular_spline_stiffness=1e4))
+
+
+def test_a_stiffness_of_other_units_is_refused() -> None:
+    in_millinewton = replace(table(BOTH_SENSES), torque=1e-3 * table(BOTH_SENSES).torque)
+    laws = sw.orders.mesh_laws(in_millinewton)
+    with pytest.raises(ValueError, match=r"gives a stiffness of 30 N.m/rad, HFUC-25-100 has .* check the units"):
+        laws.applied_to("hfuc-25-100")
+    with pytest.raises(TypeError, match=r"modes must be a ModeTable, as sw.files.ModeTable.read\(...\) gives one"):
+        laws.applied_to("hfuc-25-100", modes="modes.csv")  # type: ignore[arg-type]
 
 
 def test_tooth_passing_orders_come_back() -> None:
