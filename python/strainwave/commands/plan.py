@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -85,19 +85,14 @@ def plan(
     from strainwave.arguments import number, one_of
     from strainwave.files.entries import quantity_of
     from strainwave.files.gear_set import GearSet
-    from strainwave.identification.excitation.loops import plan_loops
-    from strainwave.identification.excitation.plan import plan_experiments as planned
+    from strainwave.identification.excitation.plan import plan_experiments
 
     if loop:
         others = {"unknown": unknown, "noise": noise, "resolution": resolution, "criterion": criterion,
                   "speed-limit": speed_limit, "lowest-speed": lowest_speed, "torque-limit": torque_limit}  # fmt: skip
         _check_alone(experiment, [name for name, value in others.items() if value])
-        gear, seconds = GearSet.read(start).gear, 60.0 * number("--minutes", minutes, low=0.0)
-        loops = _loops(loop, gear)
-        print(plan_loops([each.recording for each in loops], gear, want, time=seconds))
-        for each in loops:
-            for remark in each.remarks:
-                print(textwrap.fill(f"note: {each.path.name}: {remark}", PAGE_WIDTH, subsequent_indent="  "))
+        for line in _plan_of_loops(loop, GearSet.read(start).gear, want, 60.0 * number("--minutes", minutes, low=0.0)):
+            print(line)
         return
     if "loss" in want:
         raise ValueError("--want loss plans by loops that were measured; give them, as --loop 20Nm.csv --loop 40Nm.csv")
@@ -106,8 +101,8 @@ def plan(
         return None if given is None else quantity_of(option, given, unit, "command line").to(unit).value
 
     chosen: Any = one_of("--criterion", criterion or "A", ("A", "D"))
-    kinds = [one_of("--experiment", each, ("friction", "torsion")) for each in experiment or ("friction", "torsion")]
-    found = planned(
+    kinds = [one_of("--experiment", kind, ("friction", "torsion")) for kind in experiment or ("friction", "torsion")]
+    experiments = plan_experiments(
         GearSet.read(start),
         want,
         experiments=kinds,
@@ -120,12 +115,23 @@ def plan(
         noise=_numbers("noise", "friction=0.002", noise or []),
         resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
-    print(found)
+    print(experiments)
+
+
+def _plan_of_loops(files: list[Path], gear: Gear, want: list[str], seconds: float) -> Iterator[object]:
+    """Yield a plan of further loops, and remarks on the files of those that were measured."""
+    from strainwave.identification.excitation.loops import plan_loops
+
+    loops = _loops(files, gear)
+    yield plan_loops([measured.recording for measured in loops], gear, want, time=seconds)
+    for measured in loops:
+        for remark in measured.remarks:
+            yield textwrap.fill(f"note: {measured.path.name}: {remark}", PAGE_WIDTH, subsequent_indent="  ")
 
 
 def _check_alone(experiment: list[str] | None, options: list[str]) -> None:
     """Raise ValueError for options that a plan of loops does not use."""
-    if any(each != "torsion" for each in experiment or ()):
+    if any(kind != "torsion" for kind in experiment or ()):
         raise ValueError("--loop plans torsion loops; leave out other experiments")
     if options:
         raise ValueError(f"--loop plans by the loops that were measured, up to their torque; leave out --{options[0]}")

@@ -73,7 +73,7 @@ def read_wear_tests(
         values, names, sigma = _of_gears(files, quantities)
         done, resolution = (), {name: resolution_of(values[name]) for name in quantities}
     if work is not None:
-        done = tuple(number_in(each.strip()) for each in work.split(","))
+        done = tuple(number_in(text.strip()) for text in work.split(","))
     if not done:
         raise ValueError("gear files do not contain the work of the gear; give that before each test, as --work 0,1e6,2e6")
     count = len(next(iter(values.values())))
@@ -145,16 +145,17 @@ def _of_gears(
     gears = [GearSet.read(file) for file in files]
     values, names, sigma = {}, {}, {}
     for quantity in quantities:
-        measured = [_measured(each, quantity) for each in gears]
-        common = [name for name in measured[0] if all(name in each for each in measured)]
+        measured = [_measured(of_gear, quantity) for of_gear in gears]
+        common = [name for name in measured[0] if all(name in of_gear for of_gear in measured)]
         if not common:
-            lacking = [str(file) for file, each in zip(files, measured, strict=True) if not each]
+            lacking = [str(file) for file, of_gear in zip(files, measured, strict=True) if not of_gear]
             raise ValueError(
                 f"no number is the {quantity} of all gears" + (f": {listed(lacking)} identified none" if lacking else "")
             )
-        name = min(common, key=lambda name: sum(each[name][1] for each in measured))
-        values[quantity], names[quantity] = tuple(each[name][0] for each in measured), name
-        sigma[quantity] = sqrt(sum((each[name][0] * each[name][1]) ** 2 for each in measured) / len(measured))
+        name = min(common, key=lambda name: sum(of_gear[name][1] for of_gear in measured))
+        values[quantity], names[quantity] = tuple(of_gear[name][0] for of_gear in measured), name
+        squares = [(of_gear[name][0] * of_gear[name][1]) ** 2 for of_gear in measured]
+        sigma[quantity] = sqrt(sum(squares) / len(squares))
     return values, names, sigma
 
 

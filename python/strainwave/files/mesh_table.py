@@ -210,7 +210,7 @@ def _loads_of_matrix(opened: ArrayTable, label: Label, torque: Array, units: Map
         raise ValueError(f'{opened.file}: torque has no unit; give it with units={{"torque": "N.m"}}')
     values = convert(torque, unit, "N.m")
     loads = {}
-    for name in (each.name for each in opened.labels):
+    for name in (label.name for label in opened.labels):
         if (match := _OF_MATRIX.fullmatch(_IN_GROUP.sub("", name))) and 1 <= int(match[2]) <= len(values):
             loads[name] = _Load(match[1], float(values[int(match[2]) - 1]))
     return loads
@@ -325,7 +325,7 @@ class ModeTable(ComparedByFields, Presented):
             if len(getattr(self, name)) != len(self.frequency):
                 raise ValueError(f"{name} has {len(getattr(self, name))} rows, frequency has {len(self.frequency)}")
         if not (self.waves == np.round(self.waves)).all() or self.waves.min() < 0.0:
-            raise ValueError(f"waves must be whole numbers of 0 or more, not {listed(f'{each:g}' for each in self.waves)}")
+            raise ValueError(f"waves must be whole numbers of 0 or more, not {listed(f'{count:g}' for count in self.waves)}")
         for name in ("frequency", "damping", "mass"):
             if not (values := getattr(self, name)).min() > 0.0:
                 remedy = "leave rigid motions out" if name == "frequency" else "measure or assume it"
@@ -376,7 +376,7 @@ class ModeTable(ComparedByFields, Presented):
         rest = np.delete(np.arange(len(modes.frequency)), modes._most_compliant)
         if len(rest):
             share = typeset.percent(float(modes.compliance[rest].sum() / modes.compliance.sum()))
-            names = listed(f"{each:.4g} Hz" for each in np.sort(modes.frequency[rest]))
+            names = listed(f"{frequency:.4g} Hz" for frequency in np.sort(modes.frequency[rest]))
             remarks.append(f"a ring has {MAX_MODES} modes; left out: {names}, with {share} of the compliance of all")
         return remarks
 

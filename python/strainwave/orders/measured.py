@@ -115,7 +115,7 @@ def orders_found(
 def modes_of(recordings: Sequence[Recording]) -> RingModes | None:
     """Return the modes that orders of the output angle pass in recordings of two encoders; None if the speeds are too close."""
     needed = ("time", "input_angle", "output_angle")
-    if not all(name in each for each in recordings for name in needed):
+    if not all(name in recording for recording in recordings for name in needed):
         return None
     return ring_modes(recordings, "output_angle") if passes_frequencies(recordings, "input_angle") else None
 

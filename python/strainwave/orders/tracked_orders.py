@@ -58,7 +58,7 @@ class OrderTracks(ComparedByFields, Pictured):
         Raises:
             TypeError, ValueError: an eigenfrequency is no positive number
         """
-        frequencies = [arguments.number("eigenfrequencies", each, "rad/s", low=0.0) for each in eigenfrequencies]
+        frequencies = [arguments.number("eigenfrequencies", frequency, "rad/s", low=0.0) for frequency in eigenfrequencies]
         critical = [[frequency / order for frequency in frequencies] for order in self.order.tolist()]
         inside = [[speed for speed in speeds if self.speed[0] < speed < self.speed[-1]] for speeds in critical]
         dashed = "; dashed: critical speeds" if frequencies else ""

@@ -78,7 +78,7 @@ def plan_loops(
             raise ValueError(f"wanted: {quoted(name)} is no source of these loops; they are {known}")
     chosen = names if ALL_SOURCES in asked else [name for name in names if name in asked]
     places = [names.index(name) for name in chosen]
-    cost = np.array([_duration(each, further.temperature) for each in further.loops])
+    cost = np.array([_duration(loop, further.temperature) for loop in further.loops])
     budget = arguments.seconds("time", time)
     taken, covariance = _taken(further, places, cost, budget)
     steps = tuple(
@@ -155,6 +155,6 @@ def _notes(further: FurtherLoops) -> Iterator[str]:
     yield f"shares of the loss of a cycle, {quantity(further.shares.loss, 'J')}, of the loop of {further.shares.loop}"
     forms = percent(float(further.floors.max()))
     yield f"a share is separated below ± {percent(MAX_SHARE_SIGMA)}; widths that depart from their forms leave ± {forms}"
-    if any(each.temperature > further.temperature for each in further.loops):
+    if any(loop.temperature > further.temperature for loop in further.loops):
         yield f"{WARMING_TIME / 60.0:.0f} min assumed until the gear is warmer throughout"
     yield from further.shares.remarks

@@ -147,10 +147,8 @@ class Torsion(Kind):
         varies = float(np.std(best.fit.experiment.measured))
         shaped = judged_shape(left, {OVER_LOOP: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         gain_sigma, by_models, by_shape = _gain_sigma(loop, gear), spread_by_models(best, others), spread_by_shape(best)
-        spread = {
-            each.path: float(np.linalg.norm([by_models[each.path], by_shape[each.path], _by_gain(each, gain_sigma)]))
-            for each in best.fit.estimates
-        }
+        by_gain = {estimate.path: _by_gain(estimate, gain_sigma) for estimate in best.fit.estimates}
+        spread = {path: float(np.linalg.norm([by_models[path], by_shape[path], gain])) for path, gain in by_gain.items()}
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared, spread=spread)
         fit, estimates = fitted.with_set_before(known)
         result = FileResult(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from strainwave.orders.mesh.laws import MeshLaws
 
 MIN_EXPLAINED_SHARE = 0.5  # of the squares of the varying transmission error, by laws that a gear may have
+MAX_FACTOR = 10.0  # between the stiffness of a table and that of the gear before: gears of one size differ by a third
 
 
 def applied(laws: MeshLaws, before: GearSet, stages: Any, modes: ModeTable | None) -> GearSet:
@@ -50,6 +51,8 @@ def applied(laws: MeshLaws, before: GearSet, stages: Any, modes: ModeTable | Non
 
 def _stages(laws: MeshLaws, before: GearSet, stages: Any, modes: ModeTable | None) -> Any:
     """Return the stages with what the tables determine; None of a gear without."""
+    if not isinstance(modes, ModeTable | None):
+        raise TypeError(f"modes must be a ModeTable, as sw.files.ModeTable.read(...) gives one, not {shortened(modes)}")
     if stages is None and isinstance(before.gear.structure, structure.Staged):
         stages = before.gear.structure
     changes: dict[str, Any] = {} if modes is None else {"ring": modes.ring}
@@ -70,6 +73,8 @@ def _spring(laws: MeshLaws, before: GearSet, stages: Any) -> dict[str, Any]:
     gear, law, varying = before.gear, laws.stiffness, laws.stiffness_variation
     in_series = 0.0 if stages is None else series_compliance(gear.replace(structure=stages))
     old = series_compliance(gear)
+    if law is not None and not stages:
+        _check_size(float(law.tangent(0.0)), float(gear.stiffness.tangent(0.0)), laws.source, before.name)
     if law is None and in_series == old:
         return {} if varying is None else {"stiffness_variation": varying}
     spring = _softened(gear.stiffness, in_series - old, before.name) if law is None else _softened(law, in_series, before.name)
@@ -82,6 +87,15 @@ def _spring(laws: MeshLaws, before: GearSet, stages: Any) -> dict[str, Any]:
         waves = _waves(varying, orders) * (own + in_series) - _waves(of_mesh, orders) / (stages.mesh_stiffness * lever**2)
         varying, _ = variation_of("the stiffness less the stages", orders, waves / own)
     return {"stiffness": spring, "stiffness_variation": varying or variation.Constant()}
+
+
+def _check_size(of_table: float, of_gear: float, source: str, name: str) -> None:
+    """Raise a ValueError if the stiffness of a table is none of such a gear."""
+    if not 1.0 / MAX_FACTOR < of_table / of_gear < MAX_FACTOR:
+        raise ValueError(
+            f"{source} gives a stiffness of {of_table:.3g} N.m/rad, {name} has {of_gear:.3g} N.m/rad: check the units of "
+            "torque and transmission error, the side of the torque, and the name of the gear"
+        )
 
 
 def _sources(laws: MeshLaws, changes: dict[str, Any], stages: Any, modes: ModeTable | None) -> dict[str, Entry]:

@@ -87,11 +87,6 @@ class ErrorFit:
     orders: LoadFit
     remarks: list[str]
 
-    @property
-    def sensitivity(self) -> float:
-        """Relative fall of the error with the torque [1/(N.m)]; 0 in a model without."""
-        return self.orders.sensitivity or 0.0
-
     def factor(self, angle: Array) -> Array:
         """Return the factor of the stiffness by its variation, shape (n,)."""
         return np.ones(len(angle)) if self.variation is None else np.asarray(self.variation.factor(angle))
@@ -121,7 +116,7 @@ def error_fit(error: Harmonics, column: Harmonics | None, given: Any, loads: sli
         orders = load_fit(replace(error, torque=chosen, mean=error.mean[loads], waves=waves), compliance)
         varying = given if column is not None else variation_of("stiffness", error.orders, orders.variation)[0]
         fit = ErrorFit(spring, varying, orders.coefficients[0], orders, remarks)
-        if spring is None or (varying is None and not fit.sensitivity):
+        if spring is None or (varying is None and orders.sensitivity == 0.0):
             break
         now = np.concatenate([fit.error, orders.variation, spring.twist(error.torque)])
         if before is not None and np.allclose(now, before, rtol=MAX_CHANGE_OF_ROUND, atol=0.0):
@@ -130,7 +125,10 @@ def error_fit(error: Harmonics, column: Harmonics | None, given: Any, loads: sli
         shift, beyond = _beyond_first_order(fit, error, varies=column is None)
     by_noise = error.noise * np.sqrt(log(error.waves.size / false_alarm) / len(chosen))
     least = max(by_noise, RELATIVE_NOISE * float(np.abs(fit.error).max()))
-    return replace(fit, error=np.where(np.abs(fit.error) < least, 0.0, fit.error))
+    shown = np.where(np.abs(fit.error) < least, 0.0, fit.error)
+    made = (np.abs(beyond[loads]).max(axis=0) > error.noise) & (shown == 0.0)
+    unlike = np.sqrt(np.mean(np.abs((error.waves - beyond)[loads][:, made]) ** 2, axis=0)).max(initial=0.0)
+    return replace(fit, error=shown, orders=replace(orders, unlike=float(unlike / max(np.abs(shown).max(initial=0.0), 1e-300))))
 
 
 def _beyond_first_order(fit: ErrorFit, data: Harmonics, *, varies: bool) -> tuple[Array, Complex]:
@@ -142,8 +140,10 @@ def _beyond_first_order(fit: ErrorFit, data: Harmonics, *, varies: bool) -> tupl
     angle, present = 2.0 * np.pi * np.arange(points) / points, np.flatnonzero(fit.error)
     error = np.asarray(np.imag(np.exp(1j * np.outer(angle, data.orders[present])) @ fit.error[present]))
     factor, twist = fit.factor(angle), np.asarray(fit.spring.twist(data.torque))
-    exact = [transmission_error(fit.spring, error, fit.sensitivity, factor, np.full(points, load)) for load in data.torque]
-    model = np.outer((1.0 + fit.sensitivity * np.abs(data.torque)) ** -2.0, error) + twist[:, np.newaxis]
+    exact = [
+        transmission_error(fit.spring, error, fit.orders.sensitivity, factor, np.full(points, load)) for load in data.torque
+    ]
+    model = np.outer((1.0 + fit.orders.sensitivity * np.abs(data.torque)) ** -2.0, error) + twist[:, np.newaxis]
     if varies:
         model -= np.outer(data.torque / np.asarray(fit.spring.tangent(twist)), factor - 1.0)
     spectrum = np.fft.rfft(np.array(exact) - model, axis=1) / points

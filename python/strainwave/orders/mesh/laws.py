@@ -108,9 +108,9 @@ class MeshLaws(ComparedByFields, Pictured):
         return f"{of_error}; {self.source}"
 
     def _rows(self) -> Iterator[Row]:
-        for each in self.orders:
-            note = f"phase {typeset.number(float(np.degrees(each.phase)), 4)}°, {typeset.percent(each.share)} of the squares"
-            yield Row(f"order {each.order:g}", each.amplitude, "rad", each.sigma or nan, note)
+        for order in self.orders:
+            note = f"phase {typeset.number(float(np.degrees(order.phase)), 4)}°, {typeset.percent(order.share)} of the squares"
+            yield Row(f"order {order.order:g}", order.amplitude, "rad", order.sigma or nan, note)
         if isinstance(self.kinematic_error, kinematic_error.Scaled):
             yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", self.sensitivity_sigma or nan)
         if self.stiffness is not None:
@@ -131,7 +131,7 @@ class MeshLaws(ComparedByFields, Pictured):
 
         if not self.orders:
             raise ValueError("the table determines no order of the error; there is nothing to draw")
-        order, amplitude = (np.array([getattr(each, name) for each in self.orders]) for name in ("order", "amplitude"))
+        order, amplitude = (np.array([getattr(line, name) for line in self.orders]) for name in ("order", "amplitude"))
         return stems_figure(
             "Kinematic error without load", Series("order", "1", order), Series("amplitude at the output", "rad", amplitude)
         )
@@ -157,11 +157,11 @@ def mesh_laws(table: MeshTable, *, load: float | None = None, repeats: int = 1, 
 
     >>> import numpy as np
     >>> import strainwave as sw
-    >>> angle, torque = (each.ravel() for each in np.meshgrid(np.radians(np.arange(0.0, 360.0, 5.0)), [-30.0, 0.0, 30.0]))
+    >>> angle, torque = (grid.ravel() for grid in np.meshgrid(np.radians(np.arange(0.0, 360.0, 5.0)), [-30.0, 0.0, 30.0]))
     >>> error = (3e-4 * np.sin(2 * angle + 0.5) + 4e-5 * np.sin(4 * angle)) / (1 + 0.02 * abs(torque)) ** 2
     >>> table = sw.files.MeshTable(angle, torque, transmission_error=error + torque / 20e3)
-    >>> found = sw.orders.mesh_laws(table)
-    >>> found.kinematic_error.law.order, round(found.kinematic_error.load_sensitivity, 3), round(found.stiffness.k, -2)
+    >>> laws = sw.orders.mesh_laws(table)
+    >>> laws.kinematic_error.law.order, round(laws.kinematic_error.load_sensitivity, 3), round(laws.stiffness.k, -2)
     ((2.0, 4.0), 0.02, 20000.0)
     """
     if not isinstance(table, MeshTable):
@@ -197,18 +197,18 @@ def _chosen(torque: Array, load: float) -> slice:
     wanted = arguments.number("load", load, "N.m")
     place = int(np.argmin(np.abs(torque - wanted)))
     if abs(torque[place] - wanted) > MAX_LOAD_SPREAD * float(np.abs(torque).max()):
-        raise ValueError(f"load is {wanted:g} N.m; the table has {listed(f'{each:g}' for each in torque.tolist())} N.m")
+        raise ValueError(f"load is {wanted:g} N.m; the table has {listed(f'{other:g}' for other in torque.tolist())} N.m")
     return slice(place, place + 1)
 
 
 def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice, fit: ErrorFit) -> MeshLaws:
     """Return the laws with those of the transmission error."""
-    chosen, rest = strongest(fit.error, MAX_ERROR_ORDERS)
+    (chosen, rest), sensitivity = strongest(fit.error, MAX_ERROR_ORDERS), fit.orders.sensitivity
     law: Any = kinematic_error.Fourier(**of_waves(error.orders, fit.error, chosen))
     of_error, factor = np.asarray(law.error(table.angle)), fit.factor(table.angle)
     load = np.searchsorted(0.5 * (error.torque[1:] + error.torque[:-1]), table.torque)
     measured = np.asarray(table.transmission_error)
-    left = measured - transmission_error(fit.spring, of_error, fit.sensitivity, factor, table.torque)
+    left = measured - transmission_error(fit.spring, of_error, sensitivity, factor, table.torque)
     left -= (np.bincount(load, left) / np.bincount(load))[load]
     rows = np.isin(load, np.arange(len(error.torque))[loads])
     squares, unexplained = (float(np.mean(of[rows] ** 2)) for of in (measured - error.mean[load], left))
@@ -216,7 +216,7 @@ def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice
     columns = error.orders, np.abs(fit.error), fit.orders.sigma, np.angle(fit.error), power / power.sum()
     return replace(
         laws,
-        kinematic_error=kinematic_error.Scaled(law=law, load_sensitivity=fit.sensitivity) if fit.sensitivity else law,
+        kinematic_error=kinematic_error.Scaled(law=law, load_sensitivity=sensitivity) if sensitivity else law,
         stiffness=fit.spring,
         stiffness_variation=fit.variation,
         orders=tuple(MeshOrder(*row) for row in np.transpose(columns)[chosen].tolist()),

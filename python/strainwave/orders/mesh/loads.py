@@ -45,17 +45,22 @@ class LoadFit:
 
     Attributes:
         data: orders that are not left out, whose waves are fitted; the others are 0
-        sensitivity: relative fall of the error with the torque [1/(N.m)]; None in a model without
+        falls: True in a model of an error that falls with the torque
+        sensitivity: relative fall of it [1/(N.m)]; 0 in a model without
         columns: of the error and, in a model with it, of the variation of the stiffness over the loads, shape (m, 1 or 2)
         coefficients: complex amplitudes of both [rad] and [1], shape (1 or 2, h)
         remarks: in words
+        unlike: share of the largest order by which the data differ from the laws at orders that the laws make of others: the
+            form of the laws is off by as much, also where it is not seen [1]
     """
 
     data: Harmonics
-    sensitivity: float | None
+    falls: bool
+    sensitivity: float
     columns: Array
     coefficients: Complex
     remarks: tuple[str, ...] = ()
+    unlike: float = 0.0
 
     @cached_property
     def left(self) -> Complex:
@@ -76,7 +81,7 @@ class LoadFit:
     def counts(self) -> tuple[int, int]:
         """Number of real numbers that it is fitted to, at least 1, and of its real unknowns."""
         orders = 2 * int(np.count_nonzero(self.coefficients[0]))
-        return max(len(self.left) * orders, 1), len(self.coefficients) * orders + (self.sensitivity is not None)
+        return max(len(self.left) * orders, 1), len(self.coefficients) * orders + self.falls
 
     def criterion(self, noise: float) -> float:
         """Bayesian information criterion (Schwarz 1978)."""
@@ -86,7 +91,7 @@ class LoadFit:
     def slope(self) -> tuple[Complex, Complex]:
         """Return the change of the waves with the sensitivity: what the coefficients make up of it, and what they do not."""
         level = np.abs(self.data.torque)
-        slope = np.outer(-2.0 * level / (1.0 + (self.sensitivity or 0.0) * level) ** 3, self.coefficients[0])
+        slope = np.outer(-2.0 * level / (1.0 + self.sensitivity * level) ** 3, self.coefficients[0])
         made_up = solved(self.columns, slope)
         return made_up, slope - self.columns @ made_up
 
@@ -98,9 +103,10 @@ class LoadFit:
         # A fall in common takes the noise out of one order; it is in all, so a lower one of them shows it.
         shown = of_order[self.coefficients[0] != 0.0].tolist() or [0.0]
         level = float(np.quantile(shown, NOISE_QUANTILE, method="lower"))
-        scatter = np.maximum(max(self.data.noise, level), of_order)
+        form = self.unlike * np.abs(self.coefficients[0])
+        scatter = np.max([np.full_like(of_order, max(self.data.noise, level)), form, of_order], axis=0)
         of_orders = np.outer(np.sqrt(np.diag(np.linalg.inv(self.columns.T @ self.columns))), scatter)
-        if self.sensitivity is None:
+        if not self.falls:
             return 0.0, of_orders
         made_up, own = self.slope()
         information = np.sum(np.abs(own) ** 2, axis=0)
@@ -135,7 +141,7 @@ def load_fit(data: Harmonics, compliance: Array | None) -> LoadFit:
     others = [[], [-torque * compliance]] if several and compliance is not None else [[]]
     models = [_fit(data, columns, falls=falls) for falls in sorted({False, several and sizes > 1}) for columns in others]
     believed = max(data.noise, RELATIVE_NOISE * float(np.abs(data.waves).max()), 1e-300)
-    without_fall = min((model for model in models if model.sensitivity is None), key=lambda model: model.criterion(believed))
+    without_fall = min((model for model in models if not model.falls), key=lambda model: model.criterion(believed))
     chosen = min(models, key=lambda model: model.criterion(believed))
     chosen = without_fall if chosen.squares > MAX_LEFT_BY_FALL * without_fall.squares else chosen
     inseparable = len(others) > 1 and chosen is not models[0] and not torque.min() < 0.0 < torque.max()
@@ -158,7 +164,7 @@ def _remarks(chosen: LoadFit, inseparable: bool, believed: float) -> Iterator[st
         yield f"{change}; {fall} and {variation} are not separable in it: {more}"
     elif left > NAMED_MISFIT * believed:
         yield f"{change}; {quantity(left, 'rad')} of it (rms) is no fall and no variation as the laws have it"
-    elif chosen.sensitivity is not None and len(np.unique(np.abs(torque))) == 2:
+    elif chosen.falls and len(np.unique(np.abs(torque))) == 2:
         yield f"between 0 and {np.abs(torque).max():g} N.m the form of the fall is not tested; add loads between"
 
 
@@ -166,18 +172,18 @@ def _fit(data: Harmonics, others: list[Array], *, falls: bool) -> LoadFit:
     """Return the model of least squares."""
     level = np.abs(data.torque)
 
-    def model(sensitivity: float | None) -> LoadFit:
-        columns = np.column_stack([(1.0 + (sensitivity or 0.0) * level) ** -2.0, *others])
-        return LoadFit(data, sensitivity, columns, np.atleast_2d(solved(columns, data.waves)))
+    def model(sensitivity: float) -> LoadFit:
+        columns = np.column_stack([(1.0 + sensitivity * level) ** -2.0, *others])
+        return LoadFit(data, falls, sensitivity, columns, np.atleast_2d(solved(columns, data.waves)))
 
     if not falls:
-        return model(None)
+        return model(0.0)
     starts = np.geomspace(MIN_FALL, MAX_FALL, SEARCH_POINTS) / float(level.max())
-    best = min(map(model, starts.tolist()), key=lambda each: each.squares)
+    best = min(map(model, starts.tolist()), key=lambda fit: fit.squares)
     for _ in range(MAX_STEPS):
         _, own = best.slope()
         step = float(np.sum((own.conj() * best.left).real) / np.sum(np.abs(own) ** 2))
-        better = model(max((best.sensitivity or 0.0) + step, 0.0))
+        better = model(max(best.sensitivity + step, 0.0))
         if not better.squares < best.squares:
             break
         best = better

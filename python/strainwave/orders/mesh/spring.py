@@ -98,7 +98,7 @@ def spring_of(error: Harmonics, column: Harmonics | None, shift: Array) -> tuple
     if by_column is not None and (off := np.abs(twists / by_column - 1.0)).max() > NAMED_DISAGREEMENT:
         worst = int(np.argmax(off))
         low, high = error.torque[worst : worst + 2].tolist()
-        by_error, by_table = ((high - low) / each[worst] for each in (twists, by_column))
+        by_error, by_table = ((high - low) / twist[worst] for twist in (twists, by_column))
         where, of_column = f"from {low:g} to {high:g} N.m", f"the column stiffness {by_table:.4g} N.m/rad"
         remarks.append(f"{where} the transmission error gives {by_error:.4g} N.m/rad, {of_column}: the former is in the model")
     return spring, remarks
