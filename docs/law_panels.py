@@ -68,7 +68,7 @@ def error(models: Shown) -> list[Draw]:
             for label, model in some:
                 sensitive = getattr(model, "load_sensitivity", getattr(model, "load_share", 0.0)) > 0.0
                 warms = hasattr(model, "reference_temperature")
-                plain = "without load" if sensitive else "at the reference temperature" if warms else None
+                plain = "without load" if sensitive else "at T0" if warms else None
                 axes.plot(np.degrees(TURN), factor * error_of(model, TURN), label=label or plain)
                 if sensitive:
                     axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
