@@ -113,7 +113,10 @@ class MeasurementFile:
 
     @property
     def is_of_one_quantity(self) -> bool:
-        """True if its name contains a quantity, and its columns but for a time have no names, or name nothing else."""
+        """True if its name contains a quantity, and its columns but for a time have no names, or name nothing else.
+
+        Angles of both shafts are a measurement by themselves.
+        """
         own = _quantity_in(self.path)
         if own is None or self.path.is_dir() or self.run is not None:
             return False
@@ -121,9 +124,12 @@ class MeasurementFile:
             if nameless(self.raw):
                 return True
             quantity = QUANTITY_OF.get(own[0].split("_")[0].casefold())
-            named = {(channel := meaning(label)) and channel.quantity for label in self.raw.labels}
+            channels = [meaning(label) for label in self.raw.labels]
         except (ValueError, OSError):
             return False
+        if {"input", "output"} <= {channel.side for channel in channels if channel and channel.quantity == quantity}:
+            return False
+        named = {channel and channel.quantity for channel in channels}
         return quantity is not None and named <= {"time", quantity, None} and ("time" in named or named == {quantity})
 
 

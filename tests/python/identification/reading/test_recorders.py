@@ -231,6 +231,19 @@ def test_a_recording_with_one_file_for_each_quantity(tmp_path: Path) -> None:
     assert options_of(asked.value) == [" ".join(str(tmp_path / f"{name}_run_1.csv") for name in ("q_d", "t", "tau"))]
 
 
+def test_angles_of_both_shafts_are_no_part_of_a_recording(tmp_path: Path) -> None:
+    angles = np.stack([TIME, 100.0 * ANGLE, ANGLE], axis=1)
+    header = "time [s],input_angle [rad],output_angle [rad]"
+    np.savetxt(tmp_path / "run_pos.csv", angles, fmt="%.9g", delimiter=",", header=header, comments="")
+    header = "time [s],joint_torque [N.m]"
+    np.savetxt(
+        tmp_path / "run_tau.csv", np.stack([TIME, TORQUE], axis=1), fmt="%.9g", delimiter=",", header=header, comments=""
+    )
+    assert recognise(tmp_path / "run_pos.csv").kind == "encoders"
+    with pytest.raises(ValueError, match="one quantity of a recording"):
+        recognise(tmp_path / "run_tau.csv")
+
+
 def test_files_of_one_channel_with_a_time_of_their_own(tmp_path: Path) -> None:
     for speed in ("10", "n10"):
         np.savetxt(tmp_path / f"run_pos1_{speed}.t", np.stack([TIME, ANGLE], axis=1), fmt="%.9g")
