@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
+from strainwave.statistics.runs import runs_of
 from strainwave.typeset import number, uncertain
 
 Array = NDArray[np.float64]
@@ -133,7 +134,7 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     best = tuple(
         _candidate(balls, passes[part], wanted, spread, outer_speed)
         for balls, passes, count in tried
-        for part in _stretches(count >= max(least, 1))
+        for part in runs_of(count >= max(least, 1))
     )
     counts = {bearing.balls for bearing in best}
     chance = _chance(spread, most)
@@ -165,11 +166,6 @@ def _explained(balls: int, orders: Array, sigma: Array, low: float, high: float)
         lag = np.minimum(lag, np.abs(order - times * passes) - reach * times)
         count += lag < MAX_SIGMAS * spread
     return passes, count
-
-
-def _stretches(chosen: NDArray[np.bool_]) -> Iterator[slice]:
-    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
-    return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
 
 
 def _candidate(balls: int, passes: Array, orders: Array, sigma: Array, outer: float) -> BearingCandidate:
