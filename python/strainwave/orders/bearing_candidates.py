@@ -120,12 +120,9 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     >>> any(bearing.balls == 23 and abs(bearing.diameter_ratio - 5.0 / 44.0) < 1e-4 for bearing in three.candidates)
     True
     """
-    wanted = np.atleast_1d(np.asarray(arguments.numbers("orders", orders)))
-    spread = np.atleast_1d(np.asarray(arguments.numbers("sigma", sigma)))
-    if wanted.shape != spread.shape or wanted.ndim != 1 or not wanted.size:
-        raise ValueError(f"orders and sigma must be series of one length; their shapes are {wanted.shape} and {spread.shape}")
-    if not (wanted > 0.0).all() or not (spread > 0.0).all():
-        raise ValueError("orders and their standard deviations must be positive")
+    wanted, spread = arguments.positive_series("orders", orders), arguments.positive_series("sigma", sigma)
+    if len(wanted) != len(spread):
+        raise ValueError(f"sigma has {len(spread)} standard deviations for {len(wanted)} orders; give one for each")
     outer_speed = arguments.number("outer_speed", outer_speed, low=-0.5, high=0.5)
     low, high = (0.5 * (1.0 + ratio) * (1.0 - outer_speed) for ratio in DIAMETER_RATIOS)
     tried = [(balls, *_explained(balls, wanted, spread, low, high)) for balls in BALL_COUNTS]
