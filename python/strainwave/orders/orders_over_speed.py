@@ -25,6 +25,7 @@ from strainwave.files.units import convert
 from strainwave.messages import named
 from strainwave.orders.turning import evenly, reach_of, smooth_speed, unwrapped
 from strainwave.statistics.linear_fit import order_waves
+from strainwave.statistics.runs import runs_of
 from strainwave.typeset import number
 
 Array = NDArray[np.float64]
@@ -119,12 +120,10 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
     turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
     speed = smooth_speed(turned, reach_of(len(turned))) / record.step
     sense = 1.0 if turned[-1] >= turned[0] else -1.0
-    inside = np.concatenate([[False], sense * speed > 1e-3 * float(np.abs(speed).max()), [False]])
-    starts, stops = np.flatnonzero(np.diff(inside.astype(int)) == 1), np.flatnonzero(np.diff(inside.astype(int)) == -1)
-    if not len(starts):
+    runs = runs_of(sense * speed > 1e-3 * float(np.abs(speed).max()))
+    if not runs:
         raise ValueError(f"{angle} does not turn")
-    longest = int(np.argmax(stops - starts))
-    part = slice(int(starts[longest]), int(stops[longest]))
+    part = max(runs, key=lambda run: run.stop - run.start)
     remarks = record.remarks
     if (used := part.stop - part.start) < 0.95 * len(turned):
         remarks += (f"{number(used * record.step, 3)} s are used, in which {angle} turns one way without a stop",)
