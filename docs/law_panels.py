@@ -38,6 +38,7 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 # ---- Kinematic error -------------------------------------------------------------------------------------------------
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
+WARMER = 40.0  # K, by which an error over the temperature is drawn a second time
 DRAWN_SPEED = 100.0  # rad/s, at which a random error is drawn
 NOISES = (sw.kinematic_error.Stochastic, sw.kinematic_error.MicroSlip)
 
@@ -66,11 +67,14 @@ def error(models: Shown) -> list[Draw]:
             factor, unit = prefixed(max(size[label] for label, _ in some), "rad")
             for label, model in some:
                 sensitive = getattr(model, "load_sensitivity", getattr(model, "load_share", 0.0)) > 0.0
-                axes.plot(
-                    np.degrees(TURN), factor * error_of(model, TURN), label=label or ("without load" if sensitive else None)
-                )
+                warms = hasattr(model, "reference_temperature")
+                plain = "without load" if sensitive else "at T0" if warms else None
+                axes.plot(np.degrees(TURN), factor * error_of(model, TURN), label=label or plain)
                 if sensitive:
                     axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
+                if warms:
+                    warm = model.replace(temperature=model.reference_temperature + WARMER)
+                    axes.plot(np.degrees(TURN), factor * error_of(warm, TURN), label=f"{WARMER:g} K warmer")
             axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
 
         return draw
@@ -223,6 +227,46 @@ def slipped(model: Any) -> float:
     return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
 
 
+# ---- Variation and ring ----------------------------------------------------------------------------------------------
+
+FORCE_ORDER = 4.0  # of the wave generator, of the mesh force that a ring answers
+
+
+@having("factor")
+def variation(models: Shown) -> list[Draw]:
+    """Over a turn of the wave generator."""
+    law = models[0][1]
+    if not law.active:
+        return []
+
+    def draw(axes: Axes) -> None:
+        axes.plot(np.degrees(TURN), law.factor(TURN))
+        axes.set(xlabel="input angle [deg]", ylabel="stiffness over its mean [1]", xticks=np.arange(0, 361, 60))
+
+    return [draw]
+
+
+@having("natural_frequency", "waves", "mass")
+def ring(models: Shown) -> list[Draw]:
+    """Amplitude of the teeth over the speed, under a mesh force of one order."""
+    modes = models[0][1]
+    speed = np.linspace(0.0, max(modes.natural_frequency), 2000)
+
+    def answer(place: int, order: float) -> NDArray[np.complex128]:
+        own, frequency = modes.natural_frequency[place], order * speed
+        dynamic = own**2 - frequency**2 + 2j * modes.damping[place] * own * frequency
+        return np.asarray(0.5 / (modes.mass[place] * dynamic))
+
+    def draw(axes: Axes) -> None:
+        each = ((place, waves) for place, waves in enumerate(modes.waves))
+        motion = sum(answer(place, FORCE_ORDER + sign * waves) for place, waves in each for sign in (1.0, -1.0))
+        factor, unit = prefixed(float(np.abs(motion).max()), "m/N")
+        axes.semilogy(speed, factor * np.abs(motion))
+        axes.set(xlabel="input speed [rad/s]", ylabel=f"order {FORCE_ORDER:g} of u over force [{unit}]")
+
+    return [draw]
+
+
 # ---- Material --------------------------------------------------------------------------------------------------------
 
 
@@ -251,6 +295,8 @@ PANELS = (
     presliding,
     spring,
     loop,
+    variation,
+    ring,
     moduli,
 )
 

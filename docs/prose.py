@@ -59,8 +59,11 @@ def width(formula: str) -> int:
 
 
 def escaped(text: str) -> str:
-    """Return plain words as Markdown: code in backticks stays, symbols become formulas, other characters are escaped."""
-    return re.sub(rf"(``.*?``|`[^`]+`)|({SYMBOL})|([\\`*_\[\]<>#|$])", markup, text)
+    """Return plain words as Markdown: code in backticks stays, symbols become formulas, other characters are escaped.
+
+    So is a plus sign that begins a line, which would begin a list.
+    """
+    return re.sub(rf"(``.*?``|`[^`]+`)|({SYMBOL})|([\\`*_\[\]<>#|$]|(?<=\n)\+(?= ))", markup, text)
 
 
 def markup(match: re.Match[str]) -> str:

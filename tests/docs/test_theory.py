@@ -53,6 +53,10 @@ def test_symbols_within_words_become_formulas_and_code_stays() -> None:
     assert words == r"$\theta_{\mathrm{in}}$ of ``pitch_radius``, $\varphi$, $k_{i}$ and bearing\_stiffness"
 
 
+def test_a_plus_sign_that_begins_a_line_begins_no_list() -> None:
+    assert escaped("falls as 1\n+ cos x, a + b\n+1") == "falls as 1\n\\+ cos x, a + b\n+1"
+
+
 def test_titles_of_documents_and_works_are_links() -> None:
     title = titles()[1]
     assert linked(f'"{title}", K_s; Dahl1968') == (

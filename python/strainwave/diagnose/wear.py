@@ -166,6 +166,7 @@ def wear_life(
     limits: Mapping[str, float],
     *,
     resolution: Mapping[str, float] | None = None,
+    sigma: Mapping[str, float] | None = None,
 ) -> WearLife:
     """Return wear rates and remaining life of one gear by repeated tests.
 
@@ -182,6 +183,7 @@ def wear_life(
             friction [N.m], stiffness [N.m/rad]
         limits: value of each at which the gear is worn out
         resolution: smallest difference of the values of each; if not given, that of their last decimal
+        sigma: standard deviation that the tests state of each; the noise is at least that
 
     Raises:
         ValueError: a name is none of these, numbers of tests differ or are too few, all are of the same work, or the first
@@ -198,7 +200,16 @@ def wear_life(
     confidence = 1.0 - (1.0 - CONFIDENCE_LEVEL) / len(tests)
     steps = {name: resolution_of(values) for name, values in tests.items()} | dict(resolution or {})
     trends = tuple(
-        _trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence, steps[name]) for name in tests
+        _trend(
+            name,
+            done,
+            arguments.numbers(name, tests[name]),
+            limits[name],
+            confidence,
+            steps[name],
+            (sigma or {}).get(name, 0.0),
+        )
+        for name in tests
     )
     first = min(trends, key=lambda trend: trend.remaining)
     return WearLife(
@@ -240,7 +251,9 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
 
 
-def _trend(name: str, work: Array, values: Array, limit: float, confidence: float, resolution: float) -> WearTrend:
+def _trend(
+    name: str, work: Array, values: Array, limit: float, confidence: float, resolution: float, known_sigma: float
+) -> WearTrend:
     """Return the trend of one quantity; one that falls towards its limit is turned over."""
     unit = QUANTITY_UNITS[name]
     limit = arguments.number(f"limits[{quoted(name)}]", limit, unit)
@@ -251,7 +264,7 @@ def _trend(name: str, work: Array, values: Array, limit: float, confidence: floa
             f"the first test is past the limit of the {name}: {quantity(first, unit)}, limit {quantity(limit, unit)}, and wear "
             f"{'lowers' if sense < 0.0 else 'raises'} it; correct the limit"
         )
-    line = line_crossing(work, sense * values, sense * limit, confidence, resolution / sqrt(12.0))
+    line = line_crossing(work, sense * values, sense * limit, confidence, resolution / sqrt(12.0), known_sigma)
     determined = isfinite(line.high)
     return WearTrend(
         name,
