@@ -368,7 +368,7 @@ def spectrum_figure(ripple: Ripple, name: str) -> str:
 
 
 def map_figure(ripple: Ripple, name: str) -> str:
-    """Return the figure of order against time; empty if the speed is constant, or no time is known."""
+    """Return the figure of order against time; empty if the speed is constant, no time is known, or the samples are too few."""
     curves = ripple.curves
     if "time" not in curves or not ripple.lines:
         return ""
@@ -381,6 +381,8 @@ def map_figure(ripple: Ripple, name: str) -> str:
     wave = curves["series"] - curves["smooth"]
     edges = np.linspace(0, len(wave), TIME_BLOCKS + 1).astype(int)
     blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= MIN_BLOCK_SAMPLES]
+    if not blocks:
+        return ""
     rows = []
     for block in blocks:
         window = np.hanning(block.stop - block.start)

@@ -34,6 +34,7 @@ MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are un
 BY_SET = "determined together with numbers that are not identified, between which the set before the file divides"
 DIVIDED_LAWS = friction.Coulomb | friction.Stribeck | friction.LuGre  # laws with Coulomb and viscous friction
 SLOPES_AT_KNEE = {"gear.stiffness.t1": ("k1", "k2"), "gear.stiffness.t2": ("k2", "k3")}
+BETWEEN_KNEES = "gear.stiffness.k2"
 MIN_SLOPE_SIGMAS = 2.0  # standard deviations by which the slopes of a spring differ at a knee
 MIN_RELATIVE_SIGMA = 1e-3  # of a torque: friction is repeated no better
 MAX_SHIFT_SIGMA = 1.0  # standard deviations: an estimate that its prior moves farther is determined in combination only
@@ -141,8 +142,11 @@ class JudgedFit:
 
 
 def without_bare_knees(estimates: Iterable[FileEstimate]) -> tuple[FileEstimate, ...]:
-    """Return estimates in which a knee of a spring is identified only between two slopes that are, and that differ."""
-    judged = tuple(estimates)
+    """Return estimates in which a knee of a spring is identified only between two slopes that are, and that differ.
+
+    The slope between two knees is identified only if these are apart.
+    """
+    judged = tuple(_apart(estimates))
     slopes = {each.path: each for each in judged}
     return tuple(
         replace(each, why=each.why or _bare([slopes.get(f"gear.stiffness.{name}") for name in SLOPES_AT_KNEE[each.path]]))
@@ -150,6 +154,18 @@ def without_bare_knees(estimates: Iterable[FileEstimate]) -> tuple[FileEstimate,
         else each
         for each in judged
     )
+
+
+def _apart(estimates: Iterable[FileEstimate]) -> Iterator[FileEstimate]:
+    """Yield estimates, the slope between two knees of a spring not identified if their distance is not significant."""
+    judged = {each.path: each for each in estimates}
+    first, second = (judged.get(path) for path in SLOPES_AT_KNEE)
+    for path, each in judged.items():
+        if path == BETWEEN_KNEES and first is not None and second is not None and not each.why:
+            far = second.value - first.value > MIN_SLOPE_SIGMAS * float(np.hypot(first.sigma, second.sigma))
+            yield each if far else replace(each, why="the knees beside this slope are not significantly apart")
+        else:
+            yield each
 
 
 def _bare(slopes: Sequence[FileEstimate | None]) -> str:

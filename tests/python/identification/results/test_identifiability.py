@@ -54,6 +54,14 @@ def test_a_knee_is_identified_between_slopes_that_are_and_that_differ(slope: flo
     assert bool(knee.why) is bool(reason)
 
 
+def test_a_slope_is_identified_between_knees_that_are_apart() -> None:
+    numbers = {"k1": (20e3, 500.0), "k2": (30e3, 500.0), "k3": (40e3, 500.0), "t1": (10.0, 0.5), "t2": (40.0, 1.0)}
+    for sigma, open_paths in ((0.5, []), (16.0, ["gear.stiffness.k2", "gear.stiffness.t1", "gear.stiffness.t2"])):
+        stated_numbers = numbers | {"t1": (10.0, sigma)}
+        estimates = [FileEstimate(f"gear.stiffness.{name}", "", *each, "") for name, each in stated_numbers.items()]
+        assert [each.path for each in without_bare_knees(estimates) if each.why] == open_paths
+
+
 def stated(found: Identified) -> dict[str, str]:
     return {each.path: each.state for each in found.states}
 
