@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
+from strainwave.statistics.runs import runs_of
 from strainwave.typeset import number, uncertain
 
 Array = NDArray[np.float64]
@@ -119,12 +120,9 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     >>> any(bearing.balls == 23 and abs(bearing.diameter_ratio - 5.0 / 44.0) < 1e-4 for bearing in three.candidates)
     True
     """
-    wanted = np.atleast_1d(np.asarray(arguments.numbers("orders", orders)))
-    spread = np.atleast_1d(np.asarray(arguments.numbers("sigma", sigma)))
-    if wanted.shape != spread.shape or wanted.ndim != 1 or not wanted.size:
-        raise ValueError(f"orders and sigma must be series of one length; their shapes are {wanted.shape} and {spread.shape}")
-    if not (wanted > 0.0).all() or not (spread > 0.0).all():
-        raise ValueError("orders and their standard deviations must be positive")
+    wanted, spread = arguments.positive_series("orders", orders), arguments.positive_series("sigma", sigma)
+    if len(wanted) != len(spread):
+        raise ValueError(f"sigma has {len(spread)} standard deviations for {len(wanted)} orders; give one for each")
     outer_speed = arguments.number("outer_speed", outer_speed, low=-0.5, high=0.5)
     low, high = (0.5 * (1.0 + ratio) * (1.0 - outer_speed) for ratio in DIAMETER_RATIOS)
     tried = [(balls, *_explained(balls, wanted, spread, low, high)) for balls in BALL_COUNTS]
@@ -133,7 +131,7 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     best = tuple(
         _candidate(balls, passes[part], wanted, spread, outer_speed)
         for balls, passes, count in tried
-        for part in _stretches(count >= max(least, 1))
+        for part in runs_of(count >= max(least, 1))
     )
     counts = {bearing.balls for bearing in best}
     chance = _chance(spread, most)
@@ -165,11 +163,6 @@ def _explained(balls: int, orders: Array, sigma: Array, low: float, high: float)
         lag = np.minimum(lag, np.abs(order - times * passes) - reach * times)
         count += lag < MAX_SIGMAS * spread
     return passes, count
-
-
-def _stretches(chosen: NDArray[np.bool_]) -> Iterator[slice]:
-    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
-    return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
 
 
 def _candidate(balls: int, passes: Array, orders: Array, sigma: Array, outer: float) -> BearingCandidate:

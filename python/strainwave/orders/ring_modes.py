@@ -26,7 +26,7 @@ from strainwave.drawing import marks
 from strainwave.drawing.simple import Series
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.messages import listed
+from strainwave.messages import listed, named
 from strainwave.orders.bearing_candidates import BearingCandidates, bearing_candidates
 from strainwave.orders.order_peaks import OrderPeak, peaks_of
 from strainwave.orders.orders_over_speed import (
@@ -385,11 +385,11 @@ def _mode(line: _Line) -> RingMode:
 def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
     """Return a remark on the orders with peaks through which no line is determined."""
     of_modes = [peak for mode in modes for peak in mode.peaks]
-    alone = dict.fromkeys(number(peak.order, 5) for peak in peaks if peak not in of_modes)
+    alone = list(dict.fromkeys(number(peak.order, 5) for peak in peaks if peak not in of_modes))
     if not alone:
         return []
     return [
-        f"order{'s' * (len(alone) > 1)} {listed(list(alone))} may pass a mode: no other order confirms it, and its frequency "
+        f"{named('order', alone)} may pass a mode: no other order confirms it, and its frequency "
         "and waves are not separable. A second order that passes it, or a slower run-up, separates them"
     ]
 

@@ -22,7 +22,7 @@ from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
-from strainwave.messages import listed
+from strainwave.messages import named
 from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
 from strainwave.orders.stage import MAX_FREQUENCY, Regressed, StageProblem
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
@@ -250,7 +250,7 @@ def transmission_error(
     remarks += _stage_remarks(fit, pair, every, chosen, speeds)
     if vibrates and (hidden := [f"{order:.5g}" for order, shaft in chosen if shaft == "mesh"]):
         why = "orders of the input whose amplitudes change with the speed have side lines there"
-        remarks.append(f"not determined: {_named(hidden)}; {why}")
+        remarks.append(f"not determined: {named('order', hidden)}; {why}")
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
@@ -279,10 +279,6 @@ def _pair(recording: Recording, load: str | None, rate: float | None) -> Pair:
     return Pair(record, *angles)
 
 
-def _named(orders: Sequence[str]) -> str:
-    return f"order{'s' * (len(orders) > 1)} {listed(orders)}"
-
-
 def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tuple[list[tuple[float, Shaft]], list[str]]:
     """Return the orders that the record determines, and remarks on those that it does not."""
     if ratio.in_joint_units and given is None:
@@ -293,11 +289,11 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     chosen: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
-        remarks.append(f"the samples do not follow {_named(missed)} at this speed; record faster, or turn slower")
+        remarks.append(f"the samples do not follow {named('order', missed)} at this speed; record faster, or turn slower")
     if missed := [f"{order:g}" for order in wanted if order < min(lowest, highest)]:
         remarks.append(
-            f"not determined: {_named(missed)}; an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the input, "
-            f"which turns {turns_in:.2g} revolutions"
+            f"not determined: {named('order', missed)}; an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the "
+            f"input, which turns {turns_in:.2g} revolutions"
         )
     if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")

@@ -55,7 +55,15 @@ def test_random_orders_determine_no_bearing() -> None:
     assert sw.orders.bearing_candidates([*exact, 5.0 * PASSES, 13.0 * PASSES], np.full(6, 1e-4)).chance < 1e-3
 
 
-@pytest.mark.parametrize(("orders", "sigma"), [([10.5], [0.1, 0.1]), ([-1.0], [0.1]), ([10.5], [0.0]), ([], [])])
-def test_series_that_do_not_fit_are_refused(orders: list[float], sigma: list[float]) -> None:
-    with pytest.raises(ValueError, match="orders"):
+@pytest.mark.parametrize(
+    ("orders", "sigma", "reason"),
+    [
+        ([10.5], [0.1, 0.1], "sigma has 2 standard deviations for 1 orders"),
+        ([-1.0], [0.1], "orders must be one series of positive numbers"),
+        ([10.5], [0.0], "sigma must be one series of positive numbers"),
+        ([], [], "orders must be one series of positive numbers"),
+    ],
+)
+def test_series_that_do_not_fit_are_refused(orders: list[float], sigma: list[float], reason: str) -> None:
+    with pytest.raises(ValueError, match=reason):
         sw.orders.bearing_candidates(orders, sigma)
