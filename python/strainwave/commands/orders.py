@@ -46,7 +46,7 @@ def orders(
     from strainwave.identification.reading.mapping import check_constant
     from strainwave.identification.reading.source import measurement_files
     from strainwave.messages import one_line
-    from strainwave.orders.measured import OrdersFound, modes_of
+    from strainwave.orders.measured import modes_of, of_several
     from strainwave.orders.torque_ripple import MAX_ORDER
     from strainwave.questions import QuestionError
     from strainwave.report.orders import orders_files, orders_summary
@@ -75,7 +75,7 @@ def orders(
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
         modes = modes_of(recordings) if len(recordings) >= MIN_RECORDINGS else None
-        together = None if modes is None else OrdersFound(f"{len(recordings)} recordings together", None, None, modes=modes)
+        together = None if modes is None else of_several(modes, len(recordings))
         turn("report")
         files = orders_files(found, Provenance.of_this_command(paths), together)
     write_report(out, files, orders_summary(found, together))

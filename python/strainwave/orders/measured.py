@@ -124,6 +124,12 @@ def modes_of(recordings: Sequence[Recording]) -> RingModes | None:
     return ring_modes(recordings, "output_angle") if passes_frequencies(recordings, "input_angle") else None
 
 
+def of_several(modes: RingModes, count: int) -> OrdersFound:
+    """Return the modes of several recordings as a result of all together."""
+    one_zero = "modes need one zero and one sense of the input angle in all recordings, because phases are compared"
+    return OrdersFound(f"{count} recordings together", None, None, () if modes.modes else (one_zero,), modes=modes)
+
+
 def with_angle(recording: Recording, side: Side | None, rate: float | None) -> tuple[Recording, str, Side, tuple[str, ...]]:
     """Return the recording with an angle, its name and side, and what was done for it."""
     for name, side_of_name in ANGLE_COLUMNS:

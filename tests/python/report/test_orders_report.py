@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from strainwave.files.recording import Recording
-from strainwave.orders.measured import OrdersFound, orders_found
+from strainwave.orders.measured import OrdersFound, of_several, orders_found
 from strainwave.orders.ring_modes import RingModes
 from strainwave.report.orders import map_figure, orders_report, orders_summary
 
 NONE = np.zeros((0, 1), complex)
 MODES = RingModes((), (), np.array([10.0]), NONE, NONE, "output_angle", "rad", None, ())
 EACH = [OrdersFound(f"speed_{place}.csv", None, None, ("deg is assumed", f"at speed {place}")) for place in range(12)]
-TOGETHER = OrdersFound("12 recordings together", None, None, modes=MODES)
+TOGETHER = of_several(MODES, 12)
 
 
 def test_recordings_together_are_first_on_the_page_and_alone_on_the_terminal() -> None:
@@ -22,6 +22,8 @@ def test_recordings_together_are_first_on_the_page_and_alone_on_the_terminal() -
     assert orders_summary(EACH, TOGETHER).splitlines() == [
         "12 recordings together",
         "  over the speed: no mode is determined",
+        "  note: modes need one zero and one sense of the input angle in all recordings,",
+        "    because phases are compared",
         "  note: of each recording: deg is assumed",
         "  note: the results of each recording are in report.html, with its other notes",
     ]
