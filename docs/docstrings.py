@@ -6,8 +6,8 @@ import inspect
 import re
 from typing import Any
 
+import prose
 import strainwave as sw
-import theory
 
 UP = "../.."  # from a page of the API reference to the root of the pages
 COMPILED_SECTION = r"^(Parameters|Raises|Source)\n-+\n((?:.+\n?)*)"
@@ -22,10 +22,10 @@ SHORTER = {
     r"<function (?:<\w+>|[^<>])*>|<factory>": "...",
     r"/, \*, .*\)": "/, **parameters)",
 }
-SYMBOL = rf"(?<!\n    )(?P<symbol>{theory.SYMBOL})|"  # not the name of a parameter
+SYMBOL = rf"(?<!\n    )(?P<symbol>{prose.SYMBOL})|"  # not the name of a parameter
 MARKED = (
     r"(?P<code>``.*?``|`[^`]+`)"
-    rf"|(?P<target>{theory.CITED})|(?P<mark>[|*\\]|(?<=\w)_(?!\w))"
+    rf"|(?P<target>{prose.CITED})|(?P<mark>[|*\\]|(?<=\w)_(?!\w))"
 )
 
 
@@ -45,7 +45,7 @@ def source(lines: str) -> str:
 def block(text: str, symbols: str = "") -> str:
     """Return a paragraph, a table, an example or a formula in reStructuredText."""
     if text.startswith(".. math::"):
-        formulas = theory.lines(" ".join(text.removeprefix(".. math::").split()))
+        formulas = prose.lines(" ".join(text.removeprefix(".. math::").split()))
         return "\n\n".join(f".. math:: {formula}" for formula in formulas)
     if text.startswith("| "):
         rows = [row.strip("| ").split(" | ") for row in text.splitlines() if not row.startswith("|--")]
@@ -57,9 +57,9 @@ def block(text: str, symbols: str = "") -> str:
 def markup(found: re.Match[str]) -> str:
     """Return code as it is, a symbol as a formula, a work as a link, another character escaped."""
     if symbol := found.groupdict().get("symbol"):
-        return rf"\ :math:`{theory.symbol(symbol)}`\ "
-    if (target := found["target"]) in theory.TARGETS:
-        page, _, anchor = theory.TARGETS[target].partition(".md")
+        return rf"\ :math:`{prose.symbol(symbol)}`\ "
+    if (target := found["target"]) in prose.TARGETS:
+        page, _, anchor = prose.TARGETS[target].partition(".md")
         return f"`{target} <{UP}/{page}.html{anchor}>`__"
     if code := found["code"]:
         return code if code.startswith("``") or is_linked(code.strip("`")) else f"`{code}`"

@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-import theory
+from prose import escaped, linked
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 PLACE = "<!-- the pictures of all examples, in place of this list -->"  # on the page gallery.md
@@ -87,7 +87,7 @@ def cards() -> str:
     """Return the picture of each example as a link to its page, and the list of these pages."""
     figures = (
         f"```{{figure}} drawn/{each.name}/{each.picture}\n:target: gallery/{each.name}.html\n:alt: {each.title}\n"
-        f":figclass: card\n\n[{theory.escaped(each.title)}](gallery/{each.name}.md)\n```"
+        f":figclass: card\n\n[{escaped(each.title)}](gallery/{each.name}.md)\n```"
         for each in examples()
     )
     pages = "\n".join(f"gallery/{each.name}" for each in examples())
@@ -98,10 +98,10 @@ def page(example: Example) -> str:
     """Return the page of an example: its words, its picture, its code, and where more is said."""
     more = ", ".join(f"[](../{path})" for path in PAGES.get(example.name[:2], ()))
     beyond = example.line.partition(":")[2].strip()  # the title
-    words = "\n\n".join(theory.linked(each) for each in (beyond[:1].upper() + beyond[1:], example.words) if each)
+    words = "\n\n".join(linked(each) for each in (beyond[:1].upper() + beyond[1:], example.words) if each)
     parts = [
-        f"# {theory.escaped(example.title)}", words,
-        f"![{theory.escaped(example.title)}](../drawn/{example.name}/{example.picture})",
+        f"# {escaped(example.title)}", words,
+        f"![{escaped(example.title)}](../drawn/{example.name}/{example.picture})",
         *([f"More: {more}."] if more else []),
         f"## The script\n\n`examples/{example.name}.py`:", f"```python\n{example.code}\n```",
     ]  # fmt: skip

@@ -131,8 +131,8 @@ def ramp_and_halt(sensor: Any) -> list[Draw]:
     time, shown = seen(sensor, motion)
 
     def draw(axes: Axes) -> None:
-        axes.plot(1e3 * time, np.interp(time, [0.0, 2e-3, 7e-3], [0.0, 0.0, 1.0]), color="0.6", label="what there is")
-        axes.plot(1e3 * time, shown, label="what it shows")
+        axes.plot(1e3 * time, np.interp(time, [0.0, 2e-3, 7e-3], [0.0, 0.0, 1.0]), color="0.6", label="angle")
+        axes.plot(1e3 * time, shown, label="reading")
         axes.set(xlabel="time [ms]", ylabel="angle [rad]")
 
     return [draw]
@@ -249,6 +249,7 @@ SUITED: dict[str, dict[str, Any]] = {
     "sampled": {"": sw.control.Sampled(law=sw.control.PID(proportional=5.0, derivative=0.1), period=4e-3, delay=1e-3)},
     "gain": {"": sw.sensor.Gain(gain=1.1, offset=0.05)},
     "encoder": {"": sw.sensor.Encoder(counts=64, eccentricity=0.05)},
+    "sine_cosine_encoder": {"": sw.sensor.SineCosineEncoder(periods=20, sine_offset=0.2, amplitude_ratio=1.5)},
     "delayed": {"": sw.sensor.Delayed(delay=2e-3)},
     "noisy": {"": sw.sensor.Noisy(amplitude=0.02, bandwidth=2000.0, seed=7)},
     "quantised": {"": sw.sensor.Quantised(law=sw.sensor.Noisy(amplitude=0.02, bandwidth=2000.0, seed=7), resolution=0.05)},

@@ -5,34 +5,19 @@ from __future__ import annotations
 import ast
 import doctest
 import re
-from collections.abc import Callable, Sequence
-from itertools import groupby, pairwise
+from collections.abc import Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-import numpy as np
+import law_panels
 import parts
 import strainwave as sw
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
+from prose import escaped, linked, markdown
 from strainwave import _core
 
-Array = NDArray[np.float64]
 Model = type[Any]
-Draw = Callable[[Axes], None]
-
-ERRATA = Path(__file__).with_name("validation") / "errata.md"
-WORKS = Path(__file__).with_name("theory") / "references.md"
-KEY = r"[A-Z][A-Za-z]+(?:1[6-9]|20)\d\d"  # of a work: its authors and its year
-GREEK = (
-    "[Aa]lpha|[Bb]eta|[Gg]amma|[Dd]elta|[Ee]psilon|[Zz]eta|[Ee]ta|[Tt]heta|[Kk]appa|[Ll]ambda|[Mm]u|[Nn]u|[Xx]i|[Pp]i|[Rr]ho|"
-    "[Ss]igma|[Tt]au|[Pp]hi|[Cc]hi|[Pp]si|[Oo]mega"
-)
-SYMBOL = rf"\b(?:(?:{GREEK}|[A-Za-z])_[A-Za-z0-9]+|(?:{GREEK}))(?:\^\d)?\b"  # of a formula, within words
-LINE = 66  # characters of a formula that fit on a line
-SPACE = 5  # characters between its parts
-LOAD_TORQUE = 10.0  # N.m, transmitted where a figure shows an error or a friction that depends on it
 
 
 def write(folder: Path) -> None:
@@ -51,11 +36,11 @@ def pages() -> dict[str, tuple[str, list[Model]]]:
     families = _core.families | _core.fault_families
     every = [(module_of(model), family, model) for family, models in families.items() for model in models.values()]
     every.sort(key=lambda entry: (entry[0], entry[0] != entry[1]))  # the family with the name of the module first
-    found = {
+    by_module = {
         name: (str(getattr(sw, name).__doc__), [model for _, _, model in entries])
         for name, entries in groupby(every, key=lambda entry: entry[0])
     }
-    return found | {"gear_and_drive": ("How the parts go together.", [sw.Gear, sw.Drive, sw.Sensors])}
+    return by_module | {"gear_and_drive": ("How the parts go together.", [sw.Gear, sw.Drive, sw.Sensors])}
 
 
 def module_of(model: Model) -> str:
@@ -75,7 +60,7 @@ def section(model: Model) -> tuple[str, Figure | None]:
     written = [f"## {model.__name__}", markdown(words), parameters(model), f"*Source:* {linked(model.source)}"]
     if module_of(model) in _core.fault_families:
         return "\n\n".join(written), None  # it does nothing by itself
-    shown = SHOWN.get(model.name) or parts.SUITED.get(model.name) or {"": constructed(model, words)}
+    shown = law_panels.SHOWN.get(model.name) or parts.SUITED.get(model.name) or {"": constructed(model, words)}
     figure = drawn(shown)
     if figure:
         written.append(f"![what {model.__name__} does]({model.name}.svg)\n\n*Shown:* {caption(shown)}")
@@ -96,12 +81,12 @@ def failure_modes(models: Sequence[Model]) -> list[str]:
 
 
 def numbers(model: Model, facts: Any) -> str:
-    """The numbers of a drive that a fault changes, by their places; of a wave its law."""
-    found: dict[str, dict[str, None]] = {}
+    """Return the numbers of a drive that a fault changes, by their places; of a wave its law."""
+    changed: dict[str, dict[str, None]] = {}
     for place, quantity, kind, _, law, *_ in model().changes(facts):
-        found.setdefault(place, {})[f"waves of `{law}`" if kind == "wave" else f"`{quantity}`"] = None
+        changed.setdefault(place, {})[f"waves of `{law}`" if kind == "wave" else f"`{quantity}`"] = None
     places: dict[tuple[str, ...], list[str]] = {}
-    for place, names in found.items():
+    for place, names in changed.items():
         places.setdefault(tuple(names), []).append(f"`{place}`")
     return "; ".join(f"{', '.join(where)}: {', '.join(names)}" for names, where in places.items())
 
@@ -112,10 +97,10 @@ def caption(shown: dict[str, Any]) -> str:
 
 
 def call(model: Any) -> str:
-    """The call that makes a model, without what has its default."""
+    """Return the call that makes a model, without what has its default."""
     numbers = {field["name"]: (getattr(model, field["name"]), field) for field in model.fields}
-    told = {name: value for name, (value, field) in numbers.items() if field["required"] or value != unasked(model, field)}
-    words = (f"{name}={call(value) if hasattr(value, 'fields') else said(value)}" for name, value in told.items())
+    given = {name: value for name, (value, field) in numbers.items() if field["required"] or value != unasked(model, field)}
+    words = (f"{name}={call(value) if hasattr(value, 'fields') else in_code(value)}" for name, value in given.items())
     return f"{type(model).__name__}({', '.join(words)})"
 
 
@@ -124,89 +109,11 @@ def unasked(model: Any, field: dict[str, Any]) -> Any:
     return getattr(model, field["follows"]) if field["follows"] else field["default"]
 
 
-def said(value: Any) -> str:
+def in_code(value: Any) -> str:
     if isinstance(value, tuple):
-        return f"[{', '.join(said(number) for number in value)}]"
+        return f"[{', '.join(in_code(number) for number in value)}]"
     return f"{value:g}" if isinstance(value, float) else repr(value)
 
-
-# ---- Words -----------------------------------------------------------------------------------------------------------
-
-
-def markdown(words: str) -> str:
-    """A docstring's formulas, examples and paragraphs."""
-    return "\n\n".join(block(text) for text in re.split(r"\n\n+", words))
-
-
-def block(text: str) -> str:
-    if text.startswith(".. math::"):
-        return "\n\n".join(f"$$\n{line}\n$$" for line in lines(" ".join(text.removeprefix(".. math::").split())))
-    if text.startswith(">>>"):
-        return f"```pycon\n{text}\n```"
-    return linked(text)
-
-
-def lines(formula: str) -> list[str]:
-    """Return the lines of a formula: broken where it is marked, and after commas where it is too wide."""
-    return [line for part in re.split(r"\\\\\s+", uniform(formula)) for line in filled(part)]
-
-
-def uniform(formula: str) -> str:
-    """Return a formula in which subscripts that are words stand upright, and phi and epsilon have one form each."""
-    words = re.sub(r"_\{(?!ij)([a-z]{2,})\}", r"_{\\mathrm{\1}}", formula)
-    return words.replace(r"\phi", r"\varphi").replace(r"\varepsilon", r"\epsilon")
-
-
-def filled(formula: str) -> list[str]:
-    """As many of its parts on a line as fit."""
-    found: list[str] = []
-    for part in re.split(r"(?<=,)\s*\\q?quad\s*", formula):
-        if found and width(found[-1]) + SPACE + width(part) <= LINE:
-            found[-1] += rf" \qquad {part}"
-        else:
-            found.append(part)
-    return found
-
-
-def width(formula: str) -> int:
-    """About how many characters a formula is wide: a command is one, unless it only arranges others."""
-    words = re.sub(r"\\(operatorname|mathrm|text|frac|sqrt|left|right|dot|;|,)", "", formula)
-    return len(re.sub(r"[\s{}_^]", "", re.sub(r"\\[a-zA-Z]+", "x", words)))
-
-
-def escaped(text: str) -> str:
-    """Return plain words as Markdown: code in backticks stays, symbols become formulas, other characters are escaped."""
-    return re.sub(rf"(``.*?``|`[^`]+`)|({SYMBOL})|([\\`*_\[\]<>#|$])", markup, text)
-
-
-def markup(found: re.Match[str]) -> str:
-    code, written, character = found.groups()
-    return code or (f"${symbol(written)}$" if written else f"\\{character}")
-
-
-def symbol(written: str) -> str:
-    """Return a symbol, as theta_in, in the language of formulas."""
-    return uniform(re.sub(r"_(\w+)", r"_{\1}", re.sub(rf"^(?={GREEK})", r"\\", written)))
-
-
-def linked(text: str) -> str:
-    """Return the same with works and titles of documents as links; raises KeyError for a work that is not described."""
-    return re.sub(CITED, lambda found: f"[{found[0]}](../{TARGETS[found[0]]})", escaped(text))
-
-
-def references() -> dict[str, str]:
-    """Where each key of a source stands."""
-    keys = re.findall(r"^### (\w+)$", WORKS.read_text(encoding="utf-8"), re.MULTILINE)
-    return {key: f"theory/references.md#{key.lower()}" for key in keys}
-
-
-def titles() -> list[str]:
-    """Return the titles of the documents that several models follow, as the headers state them."""
-    return re.findall(r'^\| \*\*[RPAT]\*\* \| "([^"]+)"', ERRATA.read_text(encoding="utf-8"), re.MULTILINE)
-
-
-TARGETS = references() | dict.fromkeys(titles(), "validation/errata.md#the-four-documents")
-CITED = rf"\b(?:{'|'.join(titles())}|{KEY})\b"
 
 # ---- Parameters ------------------------------------------------------------------------------------------------------
 
@@ -235,22 +142,22 @@ def default(field: dict[str, Any]) -> str:
 
 
 def limits(model: Model, field: dict[str, Any]) -> str:
-    """Limits that do not break, or what may be chosen."""
+    """Return limits that do not break, or what may be chosen."""
     if field["kind"] == "part":
         kinds = set((field["options"] or {}).values())
         families = [family.replace("_", " ") for family, members in _core.families.items() if kinds == set(members.values())]
         return f"any {families[0]}" if families else "—"
     if field["options"]:
         return ", ".join(field["options"])
-    found = re.search(rf"^{field['name']}: .*, in ([(\[].*[)\]]); (?:default|required)", model.__doc__ or "", re.MULTILINE)
-    return found[1].replace(" ", "\N{NO-BREAK SPACE}") if found else "—"
+    stated = re.search(rf"^{field['name']}: .*, in ([(\[].*[)\]]); (?:default|required)", model.__doc__ or "", re.MULTILINE)
+    return stated[1].replace(" ", "\N{NO-BREAK SPACE}") if stated else "—"
 
 
 # ---- What the figures show -------------------------------------------------------------------------------------------
 
 
 def constructed(model: Model, words: str) -> Any:
-    """The model that the example of a docstring makes."""
+    """Return the model that the example of a docstring makes."""
     for example in doctest.DocTestParser().get_examples(words):
         for node in ast.walk(ast.parse(example.source)):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == model.__name__:
@@ -259,98 +166,10 @@ def constructed(model: Model, words: str) -> Any:
     return None
 
 
-def preisach(density: Any) -> sw.hysteresis.Preisach:
-    return sw.hysteresis.Preisach(density=density)
-
-
-# In place of the example, where others show more; several are drawn together.
-SHOWN: dict[str, dict[str, Any]] = {
-    "fourier": {"": sw.kinematic_error.Fourier(order=[1, 2, 4], amplitude=[5e-5, 2e-4, 4e-5], phase=[0.0, 0.3, 1.1])},
-    "misalignment": {
-        f"{name}:": sw.kinematic_error.Misalignment(
-            major_radius=25.25e-3,
-            minor_radius=24.75e-3,
-            pitch_radius=25e-3,
-            housing_eccentricity=20e-6,
-            generator_eccentricity=10e-6,
-            generator_direction=0.9,
-            combine=name,
-        )
-        for name in ("single", "max", "mean")
-    },
-    "tooth_errors": {
-        f"{share:.0%} engaged:": sw.kinematic_error.ToothErrors(
-            flexspline_teeth=200,
-            circular_spline_teeth=202,
-            pitch_radius=25e-3,
-            engaged_share=share,
-            flexspline_deviation=15e-6,
-            circular_spline_deviation=15e-6,
-            seed=1,
-        )
-        for share in (0.1, 0.3)
-    },
-    "load_dependent": {
-        "": sw.friction.LoadDependent(
-            driving_forward=0.1, driving_reverse=0.15, backdriving_forward=0.2, backdriving_reverse=0.3
-        )
-    },
-    "asymmetric": {
-        "": sw.friction.Asymmetric(
-            law=sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=2e-3), dry_asymmetry=0.2
-        )
-    },
-    "curved_viscous": {
-        f"p = {p:g}:": sw.friction.CurvedViscous(coulomb=0.02, viscous_torque=0.03, exponent=p, reference_speed=10.0)
-        for p in (0.5, 1.0, 2.0)
-    },
-    "angle_speed_map": {
-        "": sw.friction.AngleSpeedMap(speed=[1.0, 4.0, 10.0], level=[0.04, 0.03, 0.05, 0.03, 0.02, 0.04, 0.05, 0.045, 0.06])
-    },
-    "cyclic": {
-        "": sw.friction.Cyclic(
-            law=sw.friction.Stribeck(coulomb=0.03, breakaway=0.045, stribeck_speed=2.0, viscous=5e-5),
-            order=[1, 2],
-            amplitude=[0.1, 0.3],
-            phase=[0.0, 1.0],
-        )
-    },
-    "thermal": {
-        "": sw.friction.Thermal(
-            law=sw.friction.Coulomb(coulomb=0.03, breakaway=0.04, viscous=2e-3), dry_fall=0.005, viscous_fall=0.025
-        )
-    },
-    "bouc_wen": {
-        f"n = {n:g}:": sw.hysteresis.BoucWen(stiffness=1000.0, saturation=0.5, sharpness=n, shape=0.5) for n in (1.0, 2.0, 8.0)
-    },
-    "backlash": {"": sw.stiffness.Backlash(law=sw.stiffness.Cubic(a1=1.2e4, a3=1e9), clearance=1e-3)},
-    "frictional_windup": {
-        "": sw.hysteresis.FrictionalWindup(
-            springs=sw.stiffness.MultiCompliance(
-                flexspline_stiffness=8000.0,
-                flexspline_hardening=0.02,
-                wave_generator_stiffness=2.0,
-                wave_generator_hardening=1.5,
-                reduction=100.0,
-            ),
-            friction=5.0,
-        )
-    },
-    "power_density": {
-        f"p = {p:g}:": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=p)) for p in (2.0, 4.0, 8.0)
-    },
-    "grid_density": {
-        "symmetric:": preisach(sw.hysteresis.GridDensity(limit=1e-3, weight=[0.2, 0.3, 0.2])),
-        "not symmetric:": preisach(sw.hysteresis.GridDensity(limit=1e-3, weight=[0.6, 0.1, 0.0])),
-    },
-    "preisach": {"": preisach(sw.hysteresis.PowerDensity(limit=1e-3, saturation=1.0, exponent=2.0))},
-}
-
-
 def drawn(shown: dict[str, Any]) -> Figure | None:
-    """Every panel that has something to show of the models, side by side."""
+    """Return the figure of every panel that has something to show of the models, side by side."""
     models = [(label.rstrip(":"), model) for label, model in shown.items() if model is not None]
-    panels = [panel for draw in PANELS if models for panel in draw(models)]
+    panels = [panel for draw in (*law_panels.PANELS, *parts.PANELS) if models for panel in draw(models)]
     if not panels:
         return None
     size = (4.6 if len(panels) == 1 else 8.6 if len(panels) == 2 else 10.5, 3.0)
@@ -362,246 +181,3 @@ def drawn(shown: dict[str, Any]) -> Figure | None:
         if any(not line.get_label().startswith("_") for line in axes.lines):
             axes.legend(fontsize="small")
     return figure
-
-
-Shown = Sequence[tuple[str, Any]]  # label and model
-
-
-def having(*verbs: str) -> Callable[[Callable[[Shown], list[Draw]]], Callable[[Shown], list[Draw]]]:
-    """Panels for models that can be asked all of these."""
-
-    def only(draw: Callable[[Shown], list[Draw]]) -> Callable[[Shown], list[Draw]]:
-        return lambda models: draw(models) if all(hasattr(models[0][1], verb) for verb in verbs) else []
-
-    return only
-
-
-def prefixed(largest: float, unit: str) -> tuple[float, str]:
-    """A factor and a unit with prefix, in which the largest value is easily read."""
-    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ")):
-        if largest * factor >= 0.1:
-            return factor, prefix + unit
-    return 1e9, "n" + unit
-
-
-# ---- Kinematic error -------------------------------------------------------------------------------------------------
-
-TURN = np.linspace(0.0, 2.0 * np.pi, 721)
-
-
-DRAWN_SPEED = 100.0  # rad/s, at which a random error is drawn
-NOISES = (sw.kinematic_error.Stochastic, sw.kinematic_error.MicroSlip)
-
-
-def error_of(model: Any, angle: Array) -> Array:
-    """Return the kinematic error [rad] without load."""
-    return model.error(angle, speed=DRAWN_SPEED) if isinstance(model, NOISES) else model.error(angle)
-
-
-def under_load(model: Any) -> Array:
-    """Return the kinematic error [rad] over a turn under `LOAD_TORQUE`. Only random ones depend on the torque alone."""
-    if isinstance(model, NOISES):
-        return model.error(TURN, torque=LOAD_TORQUE, speed=DRAWN_SPEED)
-    return parts.error_under_load(model, TURN, LOAD_TORQUE)
-
-
-@having("error", "slope")
-def error(models: Shown) -> list[Draw]:
-    """Over a turn, without load and under load; errors of very different size in panels of their own."""
-    size = {label: float(np.ptp(error_of(model, TURN))) for label, model in models}
-    large = [(label, model) for label, model in models if size[label] > 1e-2 * max(size.values())]
-    small = [(label, model) for label, model in models if size[label] <= 1e-2 * max(size.values())]
-
-    def together(some: Shown) -> Draw:
-        def draw(axes: Axes) -> None:
-            factor, unit = prefixed(max(size[label] for label, _ in some), "rad")
-            for label, model in some:
-                sensitive = getattr(model, "load_sensitivity", getattr(model, "load_share", 0.0)) > 0.0
-                axes.plot(
-                    np.degrees(TURN), factor * error_of(model, TURN), label=label or ("without load" if sensitive else None)
-                )
-                if sensitive:
-                    axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
-            axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
-
-        return draw
-
-    return [together(some) for some in (large, small) if some]
-
-
-@having("error", "highest_order")
-def spectrum(models: Shown) -> list[Draw]:
-    """Over 512 turns, after which the default band repeats."""
-
-    def draw(axes: Axes) -> None:
-        turns, points = 512, 128
-        angle = 2.0 * np.pi * np.arange(turns * points) / points
-        amplitude = 2.0 * np.abs(np.fft.rfft(error_of(models[0][1], angle))) / len(angle)
-        factor, unit = prefixed(float(amplitude.max()), "rad")
-        order = np.arange(len(amplitude)) / turns
-        axes.plot(order, factor * amplitude, linewidth=0.8)
-        axes.set(xlabel="order [1]", ylabel=f"amplitude [{unit}]", xlim=(0.0, 1.2 * models[0][1].highest_order))
-
-    return [draw]
-
-
-# ---- Friction --------------------------------------------------------------------------------------------------------
-
-SLOW = 1.0  # rad/s, at which friction is drawn over something else
-
-
-def asked(model: Any, name: str, otherwise: float) -> float:
-    """A parameter of a law, or of the one that it modulates."""
-    law = model if hasattr(model, name) else getattr(model, "law", model)
-    return float(getattr(law, name, otherwise))
-
-
-@having("steady")
-def steady(models: Shown) -> list[Draw]:
-    law = models[0][1]
-    fastest = 10.0 * asked(law, "stribeck_speed", 1.0)
-    slowest = 1e-9 * fastest
-    loaded = law.steady(SLOW, load=LOAD_TORQUE) != law.steady(SLOW)
-
-    def draw(axes: Axes) -> None:
-        for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
-            axes.plot(speed, law.steady(speed, load=LOAD_TORQUE), color="C0")
-        if law.set_valued:
-            axes.plot([0.0, 0.0], [-law.hold(-1.0, load=LOAD_TORQUE), law.hold(load=LOAD_TORQUE)], color="C0")
-        under = f" under {LOAD_TORQUE:g} N.m" if loaded else ""
-        axes.set(xlabel="speed [rad/s]", ylabel=f"steady friction{under} [N.m]")
-
-    return [draw]
-
-
-@having("steady")
-def over_contact(models: Shown) -> list[Draw]:
-    """Over whatever the law depends on besides the speed."""
-    law = models[0][1]
-    fast = 10.0 * asked(law, "stribeck_speed", 1.0)
-    ranges = {
-        "angle": (np.linspace(0.0, getattr(law, "domain_end", 2.0 * np.pi), 721), "angle [rad]", (SLOW,)),
-        "load": (np.linspace(-LOAD_TORQUE, LOAD_TORQUE, 401), "transmitted torque [N.m]", (SLOW, -SLOW)),
-        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]", (SLOW, fast)),
-    }
-
-    def over(name: str) -> Draw:
-        values, label, speeds = ranges[name]
-
-        def draw(axes: Axes) -> None:
-            several = len(speeds) > 1
-            for speed in speeds:
-                friction = law.steady(speed, **({"load": LOAD_TORQUE} | {name: values}))
-                axes.plot(values, friction, label=f"at {speed:g} rad/s" if several else None)
-            axes.set(xlabel=label, ylabel="friction [N.m]" if several else f"friction at {speeds[0]:g} rad/s [N.m]")
-
-        return draw
-
-    def varies(name: str) -> bool:
-        friction = law.steady(SLOW, **({"load": LOAD_TORQUE} | {name: ranges[name][0]}))
-        return bool(np.ptp(friction) > 1e-9 * np.abs(friction).max())
-
-    return [over(name) for name in ranges if varies(name)]
-
-
-@having("steady", "State")
-def presliding(models: Shown) -> list[Draw]:
-    """Slow cycles about three times as wide as the contact bends before it slips, if it bends."""
-    law = models[0][1]
-    bend, slow = 1e-9, 1e-9
-    bent, slipping = float(law.trace([0.0, 1.0], [bend, bend], load=LOAD_TORQUE)[-1]), float(law.steady(slow, load=LOAD_TORQUE))
-    if law.set_valued or not 0.0 < bent < 0.1 * slipping:
-        return []
-    reach = 3.0 * slipping * bend / bent
-
-    def draw(axes: Axes) -> None:
-        time = np.linspace(0.0, 125.0, 2001)
-        angle = reach * np.sin(0.1 * time)
-        factor, unit = prefixed(reach, "rad")
-        axes.plot(factor * angle, law.trace(time, np.gradient(angle, time), load=LOAD_TORQUE))
-        axes.set(xlabel=f"angle [{unit}], cycled slowly", ylabel="friction [N.m]")
-
-    return [draw]
-
-
-# ---- Stiffness and hysteresis ----------------------------------------------------------------------------------------
-
-
-@having("tangent")
-def spring(models: Shown) -> list[Draw]:
-    law = models[0][1]
-    torque = np.linspace(-1.0, 1.0, 801) * 1.5 * getattr(law, "t2", 50.0)
-    twist = law.twist(torque)
-    factor, unit = prefixed(float(twist.max()), "rad")
-
-    def torques(axes: Axes) -> None:
-        axes.plot(factor * twist, torque)
-        axes.set(xlabel=f"twist [{unit}]", ylabel="torque [N.m]")
-
-    def slopes(axes: Axes) -> None:
-        axes.plot(torque, 1e-3 * law.tangent(twist))
-        axes.set(xlabel="torque [N.m]", ylabel="stiffness [kN.m/rad]", ylim=(0.0, None))
-
-    return [torques, slopes]
-
-
-@having("work", "advance")
-def loop(models: Shown) -> list[Draw]:
-    """A loop so wide that all the models have slipped; of one alone also smaller loops in it."""
-    reach = max(slipped(model) for _, model in models)
-    inner = [0.0, 0.6, 0.2, 0.6, -1.0] if len(models) == 1 else []
-    turns = reach * np.array([0.0, 1.0, -1.0, 1.0, *inner])
-    path = np.concatenate([np.linspace(start, end, 201) for start, end in pairwise(turns)])
-
-    def draw(axes: Axes) -> None:
-        factor, unit = prefixed(reach, "rad")
-        for label, model in models:
-            axes.plot(factor * path, model.trace(path), label=label or None, linewidth=1.2)
-        axes.set(xlabel=f"twist [{unit}]", ylabel="torque [N.m]")
-
-    return [draw]
-
-
-def slipped(model: Any) -> float:
-    """The twist [rad] at which the secant has fallen to a third of what it begins with, but within all that it knows."""
-    if hasattr(model, "lost_motion"):
-        return 0.6 * float(model.lost_motion)
-    if hasattr(model, "springs"):  # which harden, so that the secant does not fall so far
-        return float(model.springs.twist(4.0 * model.friction))
-    reaches = np.geomspace(1e-6, 10.0, 281)
-    secant = np.array([model.trace([0.0, reach])[-1] / reach for reach in reaches])
-    known = getattr(getattr(model, "density", None), "limit", reaches[-1])
-    return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
-
-
-# ---- Material --------------------------------------------------------------------------------------------------------
-
-
-@having("storage", "loss")
-def moduli(models: Shown) -> list[Draw]:
-    """Over the frequency."""
-    law = models[0][1]
-    if not law.active:
-        return []
-    times = law.relaxation_time
-    frequency = np.geomspace(0.03 / max(times), 30.0 / min(times), 400)
-
-    def draw(axes: Axes) -> None:
-        axes.semilogx(frequency, law.storage(frequency), label="in phase with the twist")
-        axes.semilogx(frequency, law.loss(frequency), label="a quarter ahead")
-        axes.set(xlabel="angular frequency [rad/s]", ylabel="stiffness [N.m/rad]")
-
-    return [draw]
-
-
-PANELS: tuple[Callable[[Shown], list[Draw]], ...] = (
-    error,
-    spectrum,
-    steady,
-    over_contact,
-    presliding,
-    spring,
-    loop,
-    moduli,
-    *parts.PANELS,
-)

@@ -64,6 +64,15 @@ def listed(names: Iterable[str]) -> str:
     return ", ".join(unquoted(name) for name in names[:MAX_NAMES]) + more
 
 
+def named(what: str, names: Sequence[str]) -> str:
+    """Return names in a list after what they are, in the singular for one.
+
+    >>> named("order", ["2"]), named("order", ["2", "4"])
+    ('order 2', 'orders 2, 4')
+    """
+    return f"{what}{'s' * (len(names) != 1)} {listed(names)}"
+
+
 def in_a_sentence(names: Sequence[str]) -> str:
     """Return names as a sentence lists them.
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import law_panels
 import pytest
 import strainwave as sw
 import theory
+from prose import ERRATA, escaped, linked, titles
 from strainwave import _core
 
 FAMILIES = _core.families | _core.fault_families
@@ -42,23 +44,27 @@ def test_the_table_of_failure_modes_has_a_row_for_every_fault() -> None:
 
 def test_an_error_under_load_is_that_of_the_model_divided_by_the_load() -> None:
     law = sw.kinematic_error.Fourier(order=[2], amplitude=[3e-4], phase=[0.0])
-    loaded = theory.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
-    assert loaded == pytest.approx(law.error(theory.TURN) / (1.0 + 0.1 * theory.LOAD_TORQUE), abs=1e-6)
+    loaded = law_panels.under_load(sw.kinematic_error.Scaled(law=law, load_sensitivity=0.1))
+    assert loaded == pytest.approx(law.error(law_panels.TURN) / (1.0 + 0.1 * law_panels.LOAD_TORQUE), abs=1e-6)
 
 
 def test_symbols_within_words_become_formulas_and_code_stays() -> None:
-    words = theory.escaped("theta_in of ``pitch_radius``, phi, k_i and bearing_stiffness")
+    words = escaped("theta_in of ``pitch_radius``, phi, k_i and bearing_stiffness")
     assert words == r"$\theta_{\mathrm{in}}$ of ``pitch_radius``, $\varphi$, $k_{i}$ and bearing\_stiffness"
 
 
+def test_a_plus_sign_that_begins_a_line_begins_no_list() -> None:
+    assert escaped("falls as 1\n+ cos x, a + b\n+1") == "falls as 1\n\\+ cos x, a + b\n+1"
+
+
 def test_titles_of_documents_and_works_are_links() -> None:
-    title = theory.titles()[1]
-    assert theory.linked(f'"{title}", K_s; Dahl1968') == (
+    title = titles()[1]
+    assert linked(f'"{title}", K_s; Dahl1968') == (
         f'"[{title}](../validation/errata.md#the-four-documents)", $K_{{s}}$; [Dahl1968](../theory/references.md#dahl1968)'
     )
 
 
 def test_the_page_of_errata_has_the_titles_that_the_headers_state() -> None:
-    header = (theory.ERRATA.parents[2] / "include" / "strainwave" / "documents.hpp").read_text(encoding="utf-8")
+    header = (ERRATA.parents[2] / "include" / "strainwave" / "documents.hpp").read_text(encoding="utf-8")
     joined = re.sub(r'"\s*\\\n\s*"', "", header)
-    assert sorted(re.findall(r'"\\"(.*?)\\""', joined)) == sorted(theory.titles())
+    assert sorted(re.findall(r'"\\"(.*?)\\""', joined)) == sorted(titles())

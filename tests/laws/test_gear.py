@@ -36,8 +36,9 @@ FAMILIES = {
     "softening": "softening",
     "material": "material",
 }
+MANY_CELLS = pytest.mark.slow("physics")  # each look into a map takes long
 EVERY_PART = [
-    pytest.param(part, model, id=f"{part}={model.name}")
+    pytest.param(part, model, id=f"{part}={model.name}", marks=MANY_CELLS if model.name == "angle_speed_map" else ())
     for part, family in FAMILIES.items()
     for model in _core.families[family].values()
 ]

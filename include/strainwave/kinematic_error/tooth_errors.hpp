@@ -214,10 +214,10 @@ private:
     constexpr Harmonics<S, 1, flank_multiples> of_flanks(int passing, const S& scale) const {
         Sequence<S, 2 * flank_multiples> order{}, size{}, start{};
         if (flank_deviation.count > 0) {
-            const S pairs = S(0.5 * flexspline_teeth) * engaged_share, mean = weighted_flank(S(0.0)).real;
+            const S pairs = S(0.5) * S(flexspline_teeth) * engaged_share, mean = weighted_flank(S(0.0)).real;
             order.count = size.count = start.count = 2 * flank_multiples;
             for (int m = 1; m <= flank_multiples; ++m) {
-                const S phase = S(pi * m) * pairs, share = S(2.0) * lobes::of_both(m * passing, first_lobe, scale);
+                const S phase = S(pi) * S(m) * pairs, share = S(2.0) * lobes::of_both(m * passing, first_lobe, scale);
                 const Complex wave = weighted_flank(phase);
                 const int i = 2 * (m - 1);
                 order[i] = order[i + 1] = S(m);

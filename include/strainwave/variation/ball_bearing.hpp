@@ -115,7 +115,7 @@ struct BallBearing {
 private:
     constexpr S amplitude(int h) const {
         const int n = h * balls;
-        return S(2.0) * lobes::of_both(n, first_lobe, lobes::zone_share(S(0.5 * pi * n) * loaded_share));
+        return S(2.0) * lobes::of_both(n, first_lobe, lobes::zone_share(S(0.5 * pi) * S(n) * loaded_share));
     }
 };
 

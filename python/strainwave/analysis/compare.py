@@ -298,10 +298,10 @@ def _phase(value: float | str | None) -> float | str | None:
     return wrapped(value) if isinstance(value, float | int) else value
 
 
-def _differ(each: Difference) -> bool:
-    if each.is_phase and isinstance(each.first, float) and isinstance(each.second, float):
-        return abs(wrapped(each.second - each.first)) > MAX_ROUNDING_OF_PHASE
-    return each.first != each.second
+def _differ(difference: Difference) -> bool:
+    if difference.is_phase and isinstance(difference.first, float) and isinstance(difference.second, float):
+        return abs(wrapped(difference.second - difference.first)) > MAX_ROUNDING_OF_PHASE
+    return difference.first != difference.second
 
 
 def _pairs(path: str, first: Any, second: Any) -> list[tuple[str, tuple[Any, Any]]]:

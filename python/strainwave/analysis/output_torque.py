@@ -41,8 +41,8 @@ class OutputTorque(ComparedByFields, Pictured):
     >>> import numpy as np
     >>> import strainwave as sw
     >>> gear = sw.Gear(kinematics=sw.kinematics.PlainRatio(reduction=50.0), stiffness=sw.stiffness.Linear(k=1e4))
-    >>> found = sw.analysis.output_torque(gear, np.array([0.0, 0.05, 0.1]), np.zeros(3))
-    >>> found.torque.round(9), found.twist.round(9)
+    >>> output = sw.analysis.output_torque(gear, np.array([0.0, 0.05, 0.1]), np.zeros(3))
+    >>> output.torque.round(9), output.twist.round(9)
     (array([ 0., 10., 20.]), array([0.   , 0.001, 0.002]))
     """
 

@@ -50,7 +50,7 @@ def bode_figure(responses: Sequence[Response], unit: str, title: str) -> Figure:
         marks.label_axes(magnitude, "magnitude", unit)
         marks.label_axes(phase, "phase", "deg", "frequency", "Hz")
         if responses[0].label:
-            marks.legend(figure, magnitude, below=True)
+            marks.legend(figure, magnitude)
     return figure
 
 

@@ -192,7 +192,7 @@ def wear(
     limits = limits_in(limit)
     per_hour = None if work_per_hour is None else positive_number("--work-per-hour", work_per_hour, "J")
     read = read_wear_tests(tests, list(limits), ",".join(work) if work else None, per_hour)
-    life = wear_life(read.work, read.values, limits, resolution=read.resolution)
+    life = wear_life(read.work, read.values, limits, resolution=read.resolution, sigma=read.sigma)
     write_report(out, wear_files(read, life, per_hour, Provenance.of_this_command(tests)), wear_summary(read, life, per_hour))
 
 

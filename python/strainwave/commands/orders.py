@@ -74,11 +74,11 @@ def orders(
                 raise (question if run.path.name in question.question else question.of(run.path.name)) from None
             except ValueError as error:
                 raise ValueError(one_line(str(error) if str(run.path) in str(error) else f"{run.path}: {error}")) from None
-        if len(recordings) >= MIN_RECORDINGS and (modes := modes_of(recordings)) is not None:
-            found.append(OrdersFound(f"{len(recordings)} recordings together", None, None, modes=modes))
+        modes = modes_of(recordings) if len(recordings) >= MIN_RECORDINGS else None
+        together = None if modes is None else OrdersFound(f"{len(recordings)} recordings together", None, None, modes=modes)
         turn("report")
-        files = orders_files(found, Provenance.of_this_command(paths))
-    write_report(out, files, orders_summary(found))
+        files = orders_files(found, Provenance.of_this_command(paths), together)
+    write_report(out, files, orders_summary(found, together))
 
 
 def _of_file(

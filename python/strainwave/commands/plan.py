@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,10 +11,11 @@ import typer
 
 from strainwave.commands.options import numeric
 from strainwave.number_texts import is_number, number_in
+from strainwave.presentation import PAGE_WIDTH
 
 if TYPE_CHECKING:
     from strainwave._core import Gear
-    from strainwave.files.recording import Recording
+    from strainwave.identification.reading.recognise import Recognised
 
 
 def plan(
@@ -82,23 +85,24 @@ def plan(
     from strainwave.arguments import number, one_of
     from strainwave.files.entries import quantity_of
     from strainwave.files.gear_set import GearSet
-    from strainwave.identification.excitation.loops import plan_loops
-    from strainwave.identification.excitation.plan import plan_experiments as planned
+    from strainwave.identification.excitation.plan import plan_experiments
 
     if loop:
         others = {"unknown": unknown, "noise": noise, "resolution": resolution, "criterion": criterion,
                   "speed-limit": speed_limit, "lowest-speed": lowest_speed, "torque-limit": torque_limit}  # fmt: skip
         _check_alone(experiment, [name for name, value in others.items() if value])
-        gear, seconds = GearSet.read(start).gear, 60.0 * number("--minutes", minutes, low=0.0)
-        print(plan_loops([_loop(each, gear) for each in loop], gear, want, time=seconds))
+        for line in _plan_of_loops(loop, GearSet.read(start).gear, want, 60.0 * number("--minutes", minutes, low=0.0)):
+            print(line)
         return
+    if "loss" in want:
+        raise ValueError("--want loss plans by loops that were measured; give them, as --loop 20Nm.csv --loop 40Nm.csv")
 
     def in_si(option: str, given: str | None, unit: str) -> float | None:
         return None if given is None else quantity_of(option, given, unit, "command line").to(unit).value
 
     chosen: Any = one_of("--criterion", criterion or "A", ("A", "D"))
-    kinds = [one_of("--experiment", each, ("friction", "torsion")) for each in experiment or ("friction", "torsion")]
-    found = planned(
+    kinds = [one_of("--experiment", kind, ("friction", "torsion")) for kind in experiment or ("friction", "torsion")]
+    experiments = plan_experiments(
         GearSet.read(start),
         want,
         experiments=kinds,
@@ -111,28 +115,64 @@ def plan(
         noise=_numbers("noise", "friction=0.002", noise or []),
         resolution=_numbers("resolution", "angle=1e-5", resolution or []),
     )
-    print(found)
+    print(experiments)
+
+
+def _plan_of_loops(files: list[Path], gear: Gear, want: list[str], seconds: float) -> Iterator[object]:
+    """Yield a plan of further loops, and remarks on the files of those that were measured."""
+    from strainwave.identification.excitation.loops import plan_loops
+
+    loops = _loops(files, gear)
+    yield plan_loops([measured.recording for measured in loops], gear, want, time=seconds)
+    for measured in loops:
+        for remark in measured.remarks:
+            yield textwrap.fill(f"note: {measured.path.name}: {remark}", PAGE_WIDTH, subsequent_indent="  ")
 
 
 def _check_alone(experiment: list[str] | None, options: list[str]) -> None:
     """Raise ValueError for options that a plan of loops does not use."""
-    if any(each != "torsion" for each in experiment or ()):
+    if any(kind != "torsion" for kind in experiment or ()):
         raise ValueError("--loop plans torsion loops; leave out other experiments")
     if options:
         raise ValueError(f"--loop plans by the loops that were measured, up to their torque; leave out --{options[0]}")
 
 
-def _loop(file: Path, gear: Gear) -> Recording:
-    """Return a measured loop."""
-    from strainwave.files.recording import Recording
-    from strainwave.identification.experiments.loss_loop import LossLoop
+def _of_file(file: Path, message: str) -> str:
+    """Return a message with the name of its file."""
+    return message if message.startswith(str(file)) else f"{file}: {message}"
 
-    recording = Recording.read(file)
-    try:
-        LossLoop.of(recording, gear)
-    except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
-    return recording
+
+def _loops(files: Sequence[Path], gear: Gear) -> list[Recognised]:
+    """Return measured loops, each read as `identify` does.
+
+    Raises:
+        ValueError: a file is no loop, or two contain the same measurement
+    """
+    from dataclasses import replace
+
+    from strainwave.identification.kinds.torsion_loop import lossy_loop
+    from strainwave.identification.reading.mapping import FileMapping
+    from strainwave.identification.reading.recognise import recognise
+    from strainwave.identification.reading.several_files import same_as
+    from strainwave.questions import QuestionError
+
+    loops = []
+    for file in files:
+        try:
+            loop = recognise(file, FileMapping(kind="torsion"))
+            loop = replace(loop, recording=lossy_loop(loop, gear))
+        except QuestionError as question:
+            names = "call the columns twist [rad] and torque [N.m], or input_angle and input_torque, with the unit of each"
+            raise ValueError(_of_file(file, f"{question.question}; {names}")) from None
+        except ValueError as error:
+            raise ValueError(_of_file(file, str(error))) from None
+        if loop.units_assumed:
+            raise ValueError(f"{file}: {loop.units_assumed[0]} has no unit; write it behind the name, as in torque [N.m]")
+        loops.append(loop)
+    if copies := same_as(loops):
+        copy, original = next(iter(copies.items()))
+        raise ValueError(f"{copy} and {original} contain the same measurement; leave one of the two out")
+    return loops
 
 
 def _numbers(option: str, example: str, given: list[str]) -> dict[str, float]:

@@ -183,13 +183,16 @@ class LineCrossing(NamedTuple):
     high: float
 
 
-def line_crossing(x: Array, y: Array, threshold: float, confidence: float, min_sigma: float = 0.0) -> LineCrossing:
+def line_crossing(
+    x: Array, y: Array, threshold: float, confidence: float, min_sigma: float = 0.0, known_sigma: float = 0.0
+) -> LineCrossing:
     """Return where the line through points of equal, unknown noise passes a threshold, in the interval of Fieller1954.
 
     Args:
         x, y: of the points, shape (n,), n at least 3
         confidence: probability that the interval contains the crossing
         min_sigma: standard deviation of y that points on a line have, too
+        known_sigma: standard deviation that y has at least, and that is known without the scatter of the points
 
     >>> line_crossing(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), 5.0, 0.95).distance
     3.0
@@ -199,13 +202,14 @@ def line_crossing(x: Array, y: Array, threshold: float, confidence: float, min_s
     level = float(y.mean())
     freedom = len(x) - 2
     variance = max(float(((y - level - slope * (x - middle)) ** 2).sum()) / freedom, min_sigma**2)
+    scale = max(student(confidence, freedom) ** 2 * variance, student(confidence, inf) ** 2 * known_sigma**2)
     last = float(x.max())
     crossing = middle + (threshold - level) / slope if slope > 0.0 else inf
-    low, high = _fieller(slope, threshold - level, student(confidence, freedom) ** 2 * variance, len(x), spread)
+    low, high = _fieller(slope, threshold - level, scale, len(x), spread)
     return LineCrossing(
         level - slope * middle,
         slope,
-        float(np.sqrt(variance / spread)),
+        float(np.sqrt(max(variance, known_sigma**2) / spread)),
         max(crossing - last, 0.0),
         max(middle + low - last, 0.0),
         max(middle + high - last, 0.0),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from strainwave.diagnose.refusals import JointRecording
-from strainwave.messages import listed
+from strainwave.messages import named
 from strainwave.spline_orders import WAVE_ORDER, gear_facts, spline_orders, turning_spline_order
 
 MAX_HARMONIC = 12  # of an order, up to which a cause is named
@@ -129,9 +129,7 @@ def causes(
             cause = "" if names else "of none of both splines: a bearing, the motor, or a resonance"
         cause = "; or ".join([*([cause] if cause else []), *names])
         by_cause.setdefault(cause, []).append(f"{own:.4g}")
-    return tuple(
-        f"order{'s' if len(each) > 1 else ''} {listed(each)} of the input: {cause}" for cause, each in by_cause.items()
-    )
+    return tuple(f"{named('order', each)} of the input: {cause}" for cause, each in by_cause.items())
 
 
 def _is_multiple(order: float, base: float, reach: float) -> bool:

@@ -23,12 +23,14 @@ from strainwave.files.recording import Recording, check_recording
 from strainwave.messages import listed, quoted
 from strainwave.presentation import Presented, Row
 from strainwave.simulation.usage import work_in
-from strainwave.typeset import quantity
+from strainwave.typeset import quantity, uncertain_quantity
 
 Array = NDArray[np.float64]
 
 QUANTITY_UNITS = {"play": "rad", "amplitude": "rad", "friction": "N.m", "stiffness": "N.m/rad"}  # of ToothWear
 MIN_TESTS = 3  # of which a line leaves one degree of freedom for its noise
+MAX_TESTS = 10_000  # of one gear; a longer table is a log, whose rows are not independent
+MAX_EXTRAPOLATION = 5.0  # of the life over the work between the tests, from which it is stated (assumed)
 MAX_SOFTENING = 0.95  # of `fault.ToothWear`
 
 
@@ -164,6 +166,7 @@ def wear_life(
     limits: Mapping[str, float],
     *,
     resolution: Mapping[str, float] | None = None,
+    sigma: Mapping[str, float] | None = None,
 ) -> WearLife:
     """Return wear rates and remaining life of one gear by repeated tests.
 
@@ -180,6 +183,7 @@ def wear_life(
             friction [N.m], stiffness [N.m/rad]
         limits: value of each at which the gear is worn out
         resolution: smallest difference of the values of each; if not given, that of their last decimal
+        sigma: standard deviation that the tests state of each; the noise is at least that
 
     Raises:
         ValueError: a name is none of these, numbers of tests differ or are too few, all are of the same work, or the first
@@ -196,23 +200,38 @@ def wear_life(
     confidence = 1.0 - (1.0 - CONFIDENCE_LEVEL) / len(tests)
     steps = {name: resolution_of(values) for name, values in tests.items()} | dict(resolution or {})
     trends = tuple(
-        _trend(name, done, arguments.numbers(name, tests[name]), limits[name], confidence, steps[name]) for name in tests
+        _trend(
+            name,
+            done,
+            arguments.numbers(name, tests[name]),
+            limits[name],
+            confidence,
+            steps[name],
+            (sigma or {}).get(name, 0.0),
+        )
+        for name in tests
     )
     first = min(trends, key=lambda trend: trend.remaining)
-    remarks = tuple(
-        f"the rate of the {trend.name}, {trend.rate:.2g} ± {trend.rate_sigma:.1g} {QUANTITY_UNITS[trend.name]}/J, does not "
-        "differ from zero in the direction of its limit: more tests, or tests after more work, determine it"
-        for trend in trends
-        if not trend.determined
-    )
     return WearLife(
         trends,
         first.name if isfinite(first.remaining) else "",
         first.remaining,
         min(trend.low for trend in trends),
         min(trend.high for trend in trends),
-        remarks,
+        tuple(_remarks(trends, first.remaining, float(np.ptp(done)))),
     )
+
+
+def _remarks(trends: Sequence[WearTrend], remaining: float, tested: float) -> Iterator[str]:
+    """Yield what the tests do not determine."""
+    for trend in trends:
+        if not trend.determined:
+            rate = uncertain_quantity(1e6 * trend.rate, 1e6 * trend.rate_sigma, f"{QUANTITY_UNITS[trend.name]}/MJ")
+            not_determined = f"the rate of the {trend.name}, {rate}, does not differ from zero in the direction of its limit"
+            yield f"{not_determined}: more tests, or tests after more work, determine it"
+    if isfinite(remaining) and remaining > MAX_EXTRAPOLATION * tested:
+        longer = f"{remaining / tested:.2g} times the work between the first and the last test, {quantity(tested, 'J')}"
+        yield f"the life is {longer}: that wear stays in proportion to the work so long is assumed, not tested; check the limit"
 
 
 def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[str, float]) -> None:
@@ -225,12 +244,16 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         if len(values) != len(work):
             raise ValueError(f"{name} has {len(values)} values for {len(work)} tests; give one for each")
     if len(work) < MIN_TESTS:
-        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests; there are {len(work)}: test again")
+        raise ValueError(f"a rate of wear and its uncertainty need {MIN_TESTS} tests, not {len(work)}: test again")
+    if len(work) > MAX_TESTS:
+        raise ValueError(f"there are {len(work)} tests, at most {MAX_TESTS} are taken; give one row for each test, not a log")
     if float(np.ptp(work)) == 0.0:
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
 
 
-def _trend(name: str, work: Array, values: Array, limit: float, confidence: float, resolution: float) -> WearTrend:
+def _trend(
+    name: str, work: Array, values: Array, limit: float, confidence: float, resolution: float, known_sigma: float
+) -> WearTrend:
     """Return the trend of one quantity; one that falls towards its limit is turned over."""
     unit = QUANTITY_UNITS[name]
     limit = arguments.number(f"limits[{quoted(name)}]", limit, unit)
@@ -241,7 +264,7 @@ def _trend(name: str, work: Array, values: Array, limit: float, confidence: floa
             f"the first test is past the limit of the {name}: {quantity(first, unit)}, limit {quantity(limit, unit)}, and wear "
             f"{'lowers' if sense < 0.0 else 'raises'} it; correct the limit"
         )
-    line = line_crossing(work, sense * values, sense * limit, confidence, resolution / sqrt(12.0))
+    line = line_crossing(work, sense * values, sense * limit, confidence, resolution / sqrt(12.0), known_sigma)
     determined = isfinite(line.high)
     return WearTrend(
         name,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import sqrt
 from pathlib import Path
 
 from strainwave import arguments
@@ -34,12 +35,14 @@ class WearTests:
         values: of each test, by the name of the quantity, shape (n,)
         names: number of the gear that stands for each quantity, or its column
         resolution: of the values of each quantity, by the last digit that was written
+        sigma: root mean square of the standard deviations that the gears state of each quantity; empty of a table
     """
 
     work: tuple[float, ...]
     values: dict[str, tuple[float, ...]]
     names: dict[str, str]
     resolution: dict[str, float]
+    sigma: dict[str, float]
 
 
 def read_wear_tests(
@@ -55,8 +58,8 @@ def read_wear_tests(
         work_per_hour: of the duty [J]
 
     Raises:
-        ValueError: a quantity is not known, not in the table, or not identified in a gear file; the work is missing or given
-            twice; or there are several tables
+        ValueError: a quantity is not known, not in the table, or not identified in a gear file; the work or a file is missing
+            or given twice; or there are several tables
     """
     if unknown := [name for name in quantities if name not in QUANTITY_UNITS]:
         raise ValueError(f"--limit {unknown[0]}: wear has the quantities {listed(QUANTITY_UNITS)}")
@@ -65,18 +68,18 @@ def read_wear_tests(
         raise ValueError(f"{tables[0]} is a table, and one of {len(files)} files; give one table, or a gear file of each test")
     if tables:
         values, done, resolution = _of_table(files[0], quantities, work is None, work_per_hour)
-        names = {name: f"column {name}" for name in quantities}
+        names, sigma = {name: f"column {name}" for name in quantities}, dict[str, float]()
     else:
-        values, names = _of_gears(files, quantities)
+        values, names, sigma = _of_gears(files, quantities)
         done, resolution = (), {name: resolution_of(values[name]) for name in quantities}
     if work is not None:
-        done = tuple(number_in(each.strip()) for each in work.split(","))
+        done = tuple(number_in(text.strip()) for text in work.split(","))
     if not done:
         raise ValueError("gear files do not contain the work of the gear; give that before each test, as --work 0,1e6,2e6")
     count = len(next(iter(values.values())))
     if len(done) != count:
         raise ValueError(f"--work has {len(done)} numbers for {count} tests; give one for each, as 0,1e6,2e6")
-    return WearTests(done, values, names, resolution)
+    return WearTests(done, values, names, resolution, sigma)
 
 
 def limits_in(texts: Sequence[str]) -> dict[str, float]:
@@ -133,21 +136,27 @@ def _of_table(
     raise ValueError(f"{file.name} has no column work [J]; give {option}")
 
 
-def _of_gears(files: Sequence[Path], quantities: Sequence[str]) -> tuple[dict[str, tuple[float, ...]], dict[str, str]]:
-    """Return the values of each quantity that all gears determine, and the name of its number."""
+def _of_gears(
+    files: Sequence[Path], quantities: Sequence[str]
+) -> tuple[dict[str, tuple[float, ...]], dict[str, str], dict[str, float]]:
+    """Return the values of each quantity that all gears determine, the name of its number, and its standard deviation."""
+    if twice := [str(file) for place, file in enumerate(files) if file in files[:place]]:
+        raise ValueError(f"{twice[0]} is given twice; give the gear file of each test once")
     gears = [GearSet.read(file) for file in files]
-    values, names = {}, {}
+    values, names, sigma = {}, {}, {}
     for quantity in quantities:
-        measured = [_measured(each, quantity) for each in gears]
-        common = [name for name in measured[0] if all(name in each for each in measured)]
+        measured = [_measured(of_gear, quantity) for of_gear in gears]
+        common = [name for name in measured[0] if all(name in of_gear for of_gear in measured)]
         if not common:
-            lacking = [str(file) for file, each in zip(files, measured, strict=True) if not each]
+            lacking = [str(file) for file, of_gear in zip(files, measured, strict=True) if not of_gear]
             raise ValueError(
                 f"no number is the {quantity} of all gears" + (f": {listed(lacking)} identified none" if lacking else "")
             )
-        name = min(common, key=lambda name: sum(each[name][1] for each in measured))
-        values[quantity], names[quantity] = tuple(each[name][0] for each in measured), name
-    return values, names
+        name = min(common, key=lambda name: sum(of_gear[name][1] for of_gear in measured))
+        values[quantity], names[quantity] = tuple(of_gear[name][0] for of_gear in measured), name
+        squares = [(of_gear[name][0] * of_gear[name][1]) ** 2 for of_gear in measured]
+        sigma[quantity] = sqrt(sum(squares) / len(squares))
+    return values, names, sigma
 
 
 def _measured(gear_set: GearSet, quantity: str) -> dict[str, tuple[float, float]]:

@@ -142,8 +142,9 @@ def scaled(axis: Axis, unit: str) -> str:
     return f" [{text}]" if text else ""
 
 
-def legend(figure: Figure | SubFigure, axes: Axes, *, below: bool = False) -> None:
+def legend(figure: Figure | SubFigure, axes: Axes) -> None:
     """Place the legend above the drawing, or below it if the figure has a title, in as many columns as fit."""
+    below = bool(figure.figure.get_suptitle())
     handles, labels = axes.get_legend_handles_labels()
     lines = [textwrap.fill(label, LETTERS_PER_LINE) for label in labels]
     widest = max(len(line) for label in lines for line in label.splitlines())

@@ -50,7 +50,7 @@ def points_figure(title: str, x: Series, y: Series, levels: Mapping[str, float] 
             axes.axhline(level, color=LIGHT["model"], linestyle="--", linewidth=1.0, label=name)
         marks.label_axes(axes, y.name, y.unit, x.name, x.unit)
         if levels:
-            marks.legend(figure, axes, below=True)
+            marks.legend(figure, axes)
     return figure
 
 
@@ -86,5 +86,5 @@ def bars_figure(title: str, names: Sequence[str], of_names: Mapping[str, Sequenc
         axes.set_ylim(len(names) - 0.5, -0.5)
         axes.grid(visible=False, axis="y")
         marks.label_abscissa(axes, "", unit)
-        marks.legend(figure, axes, below=True)
+        marks.legend(figure, axes)
     return figure

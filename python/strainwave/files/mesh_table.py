@@ -210,7 +210,7 @@ def _loads_of_matrix(opened: ArrayTable, label: Label, torque: Array, units: Map
         raise ValueError(f'{opened.file}: torque has no unit; give it with units={{"torque": "N.m"}}')
     values = convert(torque, unit, "N.m")
     loads = {}
-    for name in (each.name for each in opened.labels):
+    for name in (label.name for label in opened.labels):
         if (match := _OF_MATRIX.fullmatch(_IN_GROUP.sub("", name))) and 1 <= int(match[2]) <= len(values):
             loads[name] = _Load(match[1], float(values[int(match[2]) - 1]))
     return loads
@@ -325,7 +325,7 @@ class ModeTable(ComparedByFields, Presented):
             if len(getattr(self, name)) != len(self.frequency):
                 raise ValueError(f"{name} has {len(getattr(self, name))} rows, frequency has {len(self.frequency)}")
         if not (self.waves == np.round(self.waves)).all() or self.waves.min() < 0.0:
-            raise ValueError(f"waves must be whole numbers of 0 or more, not {listed(f'{each:g}' for each in self.waves)}")
+            raise ValueError(f"waves must be whole numbers of 0 or more, not {listed(f'{count:g}' for count in self.waves)}")
         for name in ("frequency", "damping", "mass"):
             if not (values := getattr(self, name)).min() > 0.0:
                 remedy = "leave rigid motions out" if name == "frequency" else "measure or assume it"
@@ -376,7 +376,7 @@ class ModeTable(ComparedByFields, Presented):
         rest = np.delete(np.arange(len(modes.frequency)), modes._most_compliant)
         if len(rest):
             share = typeset.percent(float(modes.compliance[rest].sum() / modes.compliance.sum()))
-            names = listed(f"{each:.4g} Hz" for each in np.sort(modes.frequency[rest]))
+            names = listed(f"{frequency:.4g} Hz" for frequency in np.sort(modes.frequency[rest]))
             remarks.append(f"a ring has {MAX_MODES} modes; left out: {names}, with {share} of the compliance of all")
         return remarks
 
@@ -390,10 +390,10 @@ class ModeTable(ComparedByFields, Presented):
         """Read a table from a file of any format that `Recording.read` reads.
 
         Args:
-            path: the file. Its columns are `frequency`, `waves`, `damping`, and `mass` or `shape_squared`, the square of the
-                mass-normalised shape's displacement along the line of action [1/kg]
+            path: the file. Its columns are `frequency` [Hz or rad/s], `waves`, `damping`, and `mass` or `shape_squared`, the
+                square of the mass-normalised shape's displacement along the line of action [1/kg]
             columns: for each of these names, the name in the file, if it has another one
-            units: unit of each column, by these names, if the file has none
+            units: unit of each column, by these names, if the file has none; waves and damping need none
 
         Raises:
             ValueError: a column or a unit is missing, a number is not finite, or as the class
@@ -407,9 +407,15 @@ class ModeTable(ComparedByFields, Presented):
             if name not in wanted:
                 more = "; a model without damping has none: measure it, or assume 0.01" if name == "damping" else ""
                 raise ValueError(one_line(f"{opened.file} has no column {name}; it has {listed(there)}{more}"))
-        series = _read(path, opened, wanted, units or {})
+        without_unit = {label.name for label in opened.labels if not label.unit}
+        plain = {name: "1" for name in ("waves", "damping") if wanted[name] in without_unit}
+        series = _read(path, opened, wanted, plain | dict(units or {}))
         try:
-            values = {name: series.values(name, unit) for name, unit in MODE_UNITS.items() if name in wanted}
+            angular = measures(series.unit("frequency"), "rad/s")
+            values = {
+                name: series.values(name, unit) for name, unit in MODE_UNITS.items() if name in wanted and name != "frequency"
+            }
+            values["frequency"] = series.values("frequency", "rad/s") / tau if angular else series.values("frequency", "Hz")
             if "shape_squared" in values:
                 values["mass"] = 1.0 / _positive(values.pop("shape_squared"))
             return ModeTable(**values, source=Path(path).name)
@@ -418,7 +424,8 @@ class ModeTable(ComparedByFields, Presented):
 
     def _headline(self) -> str:
         ends = [typeset.quantity(float(end), "Hz") for end in (self.frequency.min(), self.frequency.max())]
-        return f"{counted(len(self.frequency), 'mode')} from {ends[0]} to {ends[1]}; {self.source}"
+        span = f" from {ends[0]} to {ends[1]}" if len(self.frequency) > 1 else f", {ends[0]}"
+        return f"{counted(len(self.frequency), 'mode')}{span}; {self.source}"
 
     def _rows(self) -> Iterator[Row]:
         modes = zip(self.frequency, self.waves, self.damping, self.mass, strict=True)

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from strainwave import arguments
 from strainwave.messages import listed
 from strainwave.presentation import Presented, Row
+from strainwave.statistics.runs import runs_of
 from strainwave.typeset import number, uncertain
 
 Array = NDArray[np.float64]
@@ -81,15 +82,17 @@ class BearingCandidates(Presented):
         if self.chance > MAX_CHANCE:
             return f"{orders} determine no bearing: random orders would be explained as well"
         if len(self.candidates) > MAX_LISTED:
-            counts = sorted({each.balls for each in self.candidates})
+            counts = sorted({bearing.balls for bearing in self.candidates})
             return f"{len(self.candidates)} bearings of {counts[0]} to {counts[-1]} balls explain {orders}: not separable"
-        each = [f"{c.balls} balls, d cos α / D {uncertain(c.diameter_ratio, c.diameter_ratio_sigma)}" for c in self.candidates]
-        return f"{orders}: {'; or '.join(each)}"
+        bearings = [
+            f"{c.balls} balls, d cos α / D {uncertain(c.diameter_ratio, c.diameter_ratio_sigma)}" for c in self.candidates
+        ]
+        return f"{orders}: {'; or '.join(bearings)}"
 
     def _rows(self) -> Iterator[Row]:
-        for each in self.candidates:
-            causes = "; ".join(f"{number(order, 5)}: {cause}" for order, cause in each.causes)
-            yield Row(f"{each.balls} balls", each.diameter_ratio, "1", each.diameter_ratio_sigma, causes)
+        for bearing in self.candidates:
+            causes = "; ".join(f"{number(order, 5)}: {cause}" for order, cause in bearing.causes)
+            yield Row(f"{bearing.balls} balls", bearing.diameter_ratio, "1", bearing.diameter_ratio_sigma, causes)
 
 
 def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: float = 0.0) -> BearingCandidates:
@@ -114,15 +117,12 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     (None, True)
     >>> passed = [23 * (1 - cage), 46 * (1 - cage) + 1, 7 * (1 - cage)]
     >>> three = sw.orders.bearing_candidates(passed, [1e-5, 1e-5, 1e-5])
-    >>> any(each.balls == 23 and abs(each.diameter_ratio - 5.0 / 44.0) < 1e-4 for each in three.candidates)
+    >>> any(bearing.balls == 23 and abs(bearing.diameter_ratio - 5.0 / 44.0) < 1e-4 for bearing in three.candidates)
     True
     """
-    wanted = np.atleast_1d(np.asarray(arguments.numbers("orders", orders)))
-    spread = np.atleast_1d(np.asarray(arguments.numbers("sigma", sigma)))
-    if wanted.shape != spread.shape or wanted.ndim != 1 or not wanted.size:
-        raise ValueError(f"orders and sigma must be series of one length; their shapes are {wanted.shape} and {spread.shape}")
-    if not (wanted > 0.0).all() or not (spread > 0.0).all():
-        raise ValueError("orders and their standard deviations must be positive")
+    wanted, spread = arguments.positive_series("orders", orders), arguments.positive_series("sigma", sigma)
+    if len(wanted) != len(spread):
+        raise ValueError(f"sigma has {len(spread)} standard deviations for {len(wanted)} orders; give one for each")
     outer_speed = arguments.number("outer_speed", outer_speed, low=-0.5, high=0.5)
     low, high = (0.5 * (1.0 + ratio) * (1.0 - outer_speed) for ratio in DIAMETER_RATIOS)
     tried = [(balls, *_explained(balls, wanted, spread, low, high)) for balls in BALL_COUNTS]
@@ -131,9 +131,9 @@ def bearing_candidates(orders: ArrayLike, sigma: ArrayLike, *, outer_speed: floa
     best = tuple(
         _candidate(balls, passes[part], wanted, spread, outer_speed)
         for balls, passes, count in tried
-        for part in _stretches(count >= max(least, 1))
+        for part in runs_of(count >= max(least, 1))
     )
-    counts = {each.balls for each in best}
+    counts = {bearing.balls for bearing in best}
     chance = _chance(spread, most)
     balls = counts.pop() if len(counts) == 1 and chance < MAX_CHANCE else None
     return BearingCandidates(best, balls, tuple(wanted.tolist()), chance, tuple(_remarks(best, balls, chance)))
@@ -163,11 +163,6 @@ def _explained(balls: int, orders: Array, sigma: Array, low: float, high: float)
         lag = np.minimum(lag, np.abs(order - times * passes) - reach * times)
         count += lag < MAX_SIGMAS * spread
     return passes, count
-
-
-def _stretches(chosen: NDArray[np.bool_]) -> Iterator[slice]:
-    edges = np.flatnonzero(np.diff(chosen, prepend=False, append=False))
-    return (slice(start, stop) for start, stop in edges.reshape(-1, 2).tolist())
 
 
 def _candidate(balls: int, passes: Array, orders: Array, sigma: Array, outer: float) -> BearingCandidate:
@@ -200,6 +195,6 @@ def _remarks(best: tuple[BearingCandidate, ...], balls: int | None, chance: floa
         yield "some bearing explains as many random orders as well, so that these show none: more orders, or more exact ones"
     if best and balls is None:
         yield (
-            f"{len({each.balls for each in best})} counts of balls are not separable: count the balls, or record more "
+            f"{len({bearing.balls for bearing in best})} counts of balls are not separable: count the balls, or record more "
             "revolutions, as orders are resolved to one over their number"
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -108,6 +109,9 @@ def orders_found(
     passing, curves = None, lines.curves
     if effort == "vibration" and "speed" in curves and is_run_up(curves["speed"]):
         passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
+        # An order that passes a resonance turns by half a period in a part of the record.
+        turned = [replace(line, order_sigma=hypot(line.order_sigma, 1.0 / lines.revolutions)) for line in lines.lines]
+        lines = replace(lines, lines=tuple(turned))
     lines = replace(lines, remarks=(*remarks, *lines.remarks))
     return OrdersFound(name, None, lines, () if passing is None else passing.remarks, passing)
 
@@ -115,7 +119,7 @@ def orders_found(
 def modes_of(recordings: Sequence[Recording]) -> RingModes | None:
     """Return the modes that orders of the output angle pass in recordings of two encoders; None if the speeds are too close."""
     needed = ("time", "input_angle", "output_angle")
-    if not all(name in each for each in recordings for name in needed):
+    if not all(name in recording for recording in recordings for name in needed):
         return None
     return ring_modes(recordings, "output_angle") if passes_frequencies(recordings, "input_angle") else None
 

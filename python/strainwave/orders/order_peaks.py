@@ -168,7 +168,7 @@ class _Order:
         speed, damping = fit.values[2 * k : 2 * k + 2].tolist()
         late = self.late(speed, damping)
         if late > MAX_LATE:
-            return "may pass a peak too fast to determine it: run up slower"
+            return f"may pass a peak too fast to determine it: run up {number(np.ceil(late / MAX_LATE), 2)} times as slowly"
         if not self.left_near(fit, speed, damping) < (MAX_LEFT + LATE_SHARE * late) * fit.heights[k]:
             return f"has a peak near {number(speed * 30.0 / np.pi, 3)} 1/min that is not that of a single mode"
         damping_sigma = float(np.linalg.norm([sigma[1], damping * MIN_DAMPING_SIGMA, LATE_SHARE * late * damping]))

@@ -19,11 +19,13 @@ from math import tau
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.files.recording import Recording
+from strainwave import arguments
+from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
-from strainwave.messages import listed
+from strainwave.messages import named
 from strainwave.orders.turning import evenly, reach_of, smooth_speed, unwrapped
 from strainwave.statistics.linear_fit import order_waves
+from strainwave.statistics.runs import runs_of
 from strainwave.typeset import number
 
 Array = NDArray[np.float64]
@@ -39,7 +41,6 @@ TREND_POWERS = 3  # of the angle in a stretch: constant, rate, and a change of t
 MAX_WAVE_STEP = 0.8 * np.pi  # rad of an order between samples
 WAVE_COLUMNS = 4  # of an order in a stretch: both parts, and their change
 MAX_WHOLE_ORDER = 32
-MAX_FOLLOWED = 8  # orders, the strongest ones
 MIN_ORDER = 0.3  # of the shaft: slower ones are drifts
 MAX_LOOKED_FOR = 64  # order, up to which a spectrum is searched if none are named
 MAX_SEARCHED_STEP = 0.4 * np.pi  # rad of an order between samples, as the spectrum interpolates
@@ -119,12 +120,10 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
     turned = unwrapped(angle, convert(record.columns[angle], recording.unit(angle), "rad"))
     speed = smooth_speed(turned, reach_of(len(turned))) / record.step
     sense = 1.0 if turned[-1] >= turned[0] else -1.0
-    inside = np.concatenate([[False], sense * speed > 1e-3 * float(np.abs(speed).max()), [False]])
-    starts, stops = np.flatnonzero(np.diff(inside.astype(int)) == 1), np.flatnonzero(np.diff(inside.astype(int)) == -1)
-    if not len(starts):
+    runs = runs_of(sense * speed > 1e-3 * float(np.abs(speed).max()))
+    if not runs:
         raise ValueError(f"{angle} does not turn")
-    longest = int(np.argmax(stops - starts))
-    part = slice(int(starts[longest]), int(stops[longest]))
+    part = max(runs, key=lambda run: run.stop - run.start)
     remarks = record.remarks
     if (used := part.stop - part.start) < 0.95 * len(turned):
         remarks += (f"{number(used * record.step, 3)} s are used, in which {angle} turns one way without a stop",)
@@ -138,6 +137,17 @@ def turning_one_way(recording: Recording, column: str, angle: str) -> Turning:
     return Turning(np.asarray(time), sense * turned[part], sense * speed[part], series, per_input, remarks)
 
 
+def turning_of(recordings: Recording | Sequence[Recording], column: str, angle: str) -> tuple[list[Turning], str]:
+    """Return the parts of one or several recordings in which the shaft turns one way, and the unit of the column."""
+    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
+    if not given:
+        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
+    for recording in given:
+        check_recording("recordings", recording)
+    names = arguments.text("column", column), arguments.text("angle", angle)
+    return [turning_one_way(recording, *names) for recording in given], given[0].unit(column)
+
+
 def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], beside: Sequence[float] = ()) -> OrdersOverSpeed:
     """Return the amplitudes of orders in stretches of recordings, fitted together with those of others beside them."""
     own, slow = _sampled(orders, recordings)
@@ -148,7 +158,7 @@ def orders_over_speed(recordings: Sequence[Turning], orders: Sequence[float], be
     chosen += _separated(others)[0]
     if near := [number(order, 5) for order in own if order not in separate]:
         remarks.append(
-            f"orders {listed(near)} are not followed: orders that are no whole ones lie within {1.0 / MAX_TURNS:g} of them"
+            f"not followed: {named('order', near)}, as orders that are no whole ones lie within {1.0 / MAX_TURNS:g} of them"
         )
     gap = min((high - low for low, high in pairwise([0.0, *sorted(chosen)])), default=1.0)
     turns = min(max(MIN_TURNS, 1.0 / gap), MAX_TURNS)
@@ -183,14 +193,14 @@ def _separated(orders: Sequence[float]) -> tuple[list[float], list[str]]:
             dropped.append(f"{number(order, 5)} (within {number(1.0 / MAX_TURNS, 3)} of {number(near[0], 5)})")
         else:
             kept.append(order)
-    return kept, [f"orders {listed(dropped)} are not followed by themselves"] if dropped else []
+    return kept, [f"not followed by themselves: {named('order', dropped)}"] if dropped else []
 
 
 def _sampled(orders: Sequence[float], recordings: Sequence[Turning]) -> tuple[list[float], list[str]]:
     """Return the orders that the samples can follow at some speed, and remarks on the others."""
     top = max(MAX_WAVE_STEP / max(float(np.quantile(np.diff(each.angle), 0.05)), 1e-300) for each in recordings)
     fast = [number(order, 5) for order in orders if order >= top]
-    remarks = [f"orders {listed(fast)} pass faster than the samples can follow"] if fast else []
+    remarks = [f"the samples are too slow to follow {named('order', fast)}"] if fast else []
     return [order for order in orders if order < top], remarks
 
 
@@ -230,8 +240,13 @@ def _amplitudes(recording: Turning, start: int, stop: int, orders: Sequence[floa
     sine, cosine = of_middle[0::2], of_middle[1::2]
     amplitudes[slow] = cosine - 1j * sine
     left = recording.series[start:stop] - columns @ values
-    freedom = len(angle) - columns.shape[1]
-    return amplitudes, float(np.sqrt(2.0 * (left @ left) / freedom / len(angle)))
+    noise = max(float(np.sqrt(left @ left / (len(angle) - columns.shape[1]))), _rounding(recording.series))
+    return amplitudes, noise * float(np.sqrt(2.0 / len(angle)))
+
+
+def _rounding(series: Array) -> float:
+    """Return the least noise of a column: numbers are rounded."""
+    return float(np.finfo(float).eps * np.abs(series).max() + 1e-300)
 
 
 # ---- Orders that stand out -------------------------------------------------------------------------------------------
@@ -291,6 +306,7 @@ def _segments(recording: Turning, turns: float) -> Iterator[Array]:
     series = Akima1DInterpolator(recording.angle[ahead], recording.series[ahead])(path)
     steps = np.interp(path, recording.angle[ahead][1:], np.diff(recording.angle[ahead]))
     window = np.hanning(count + 1)[:-1]
+    least = _rounding(series) ** 2 * float(window @ window)
     along = np.linspace(-1.0, 1.0, count)
     trend = np.linalg.qr(along[:, None] ** np.arange(TREND_POWERS))[0]
     for start in range(0, len(series) - count + 1, max(count // 2, 1)):
@@ -301,7 +317,7 @@ def _segments(recording: Turning, turns: float) -> Iterator[Array]:
         excess = np.full(lines, np.nan)
         if sampled > int(turns):
             floor = median_filter(power[:sampled], int(turns) | 1, mode="nearest") / np.log(2.0)
-            excess[:sampled] = power[:sampled] / np.maximum(floor, 1e-300)
+            excess[:sampled] = power[:sampled] / np.maximum(floor, least)
         yield excess
 
 

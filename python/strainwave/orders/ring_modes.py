@@ -6,7 +6,8 @@ Order q of the shaft has the frequency :math:`q \Omega`. A mode is a line over t
 
 with a point at each peak i of an order. A mode that stands against the lobes of the wave generator has the slope s = 0, one
 with n waves that goes round freely has s = n and s = -n; lobes that hold it in part make slopes between. Two peaks determine a
-line, and a third one shows whether it is one. The slope is stated as waves if it is a whole number.
+line, and a third one shows whether it is one. The slope is stated as waves if it is a whole number. A peak on no line is not
+stated: its order alone does not show whether it is that of one mode, of two, or of an order close by.
 """
 
 from __future__ import annotations
@@ -22,20 +23,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments
 from strainwave.drawing import marks
-from strainwave.drawing.style import LIGHT
+from strainwave.drawing.simple import Series
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
-from strainwave.messages import listed
+from strainwave.files.recording import Recording
+from strainwave.messages import listed, named
 from strainwave.orders.bearing_candidates import BearingCandidates, bearing_candidates
 from strainwave.orders.order_peaks import OrderPeak, peaks_of
 from strainwave.orders.orders_over_speed import (
     OrderLine,
     OrdersOverSpeed,
     orders_over_speed,
-    turning_one_way,
+    turning_of,
     uneven_orders,
     whole_orders,
 )
+from strainwave.orders.tracked_orders import PANEL_HEIGHT, OrderTracks, draw_orders
 from strainwave.orders.turning import reach_of, smooth_speed
 from strainwave.presentation import Pictured, Row
 from strainwave.typeset import number, uncertain
@@ -62,8 +64,6 @@ MAX_CHANCE = 0.05  # probability that peaks of different modes lie on such a lin
 MAX_BEND = 5e-4  # of the frequency, by which lines are not straight (assumed)
 MIN_BREADTH = 0.03  # share of the speed by which the peaks of a line must differ
 MIN_DAMPING_SIGMA = 0.01  # of the damping: forces are not quite constant along a peak (assumed)
-FIGURE_HEIGHT = 1.7  # inches of an order
-MAX_DRAWN_ORDERS = 6
 
 
 @dataclass(frozen=True)
@@ -99,11 +99,10 @@ class RingMode:
 
 @dataclass(frozen=True, eq=False)
 class RingModes(ComparedByFields, Pictured):
-    """Peaks of orders over the speed, and the modes that explain them.
+    """Modes that several orders pass over the speed.
 
     Attributes:
         modes: the lowest frequency first
-        peaks: of all orders, those of no mode as well
         orders: that were followed [1]
         speed: of the shaft in each stretch [rad/s], shape (k,)
         amplitude: of the orders [unit of the column], where the angle is 0 as of a cosine, shape (orders, k)
@@ -115,7 +114,6 @@ class RingModes(ComparedByFields, Pictured):
     """
 
     modes: tuple[RingMode, ...]
-    peaks: tuple[OrderPeak, ...]
     orders: tuple[float, ...]
     speed: Array
     amplitude: Complex
@@ -134,13 +132,11 @@ class RingModes(ComparedByFields, Pictured):
         yield Row("orders followed", listed([number(q, 5) for q in self.orders]) or "none")
         for place, mode in enumerate(self.modes, 1):
             yield Row(f"mode {place}", words_of(mode))
-        for peak in self.peaks:
-            yield Row(f"order {number(peak.order, 5)}", words_of_peak(peak))
         if self.bearing is not None:
             yield Row("bearing", self.bearing._headline())
 
     def plot(self) -> Figure:
-        """Return a figure of the amplitude of each order over the speed, with the model and the peaks."""
+        """Return a figure of the amplitude of each order over the speed, with the model and the peaks of modes."""
         return modes_figure(self)
 
 
@@ -151,10 +147,10 @@ def ring_modes(
     angle: str = "input_angle",
     orders: ArrayLike | None = None,
 ) -> RingModes:
-    """Return the peaks that orders of a column have over the speed, and the modes that explain them.
+    """Return the modes that orders of a column pass over the speed, as far as peaks of several orders determine them.
 
     Two orders that meet a mode determine its line: frequency and waves. With one order alone the waves, and so the frequency,
-    stay open, and the peak is stated alone. A sensor that stands, as an accelerometer, meets each order at its own frequency,
+    stay open, and a remark names the order. A sensor that stands, as an accelerometer, meets each order at its own frequency,
     whatever the waves: its lines have no slope.
 
     Args:
@@ -165,8 +161,8 @@ def ring_modes(
         orders: of the wave generator to follow [1], shape (n,); by default those that stand out, the eight strongest
 
     Returns:
-        Peaks and modes with standard deviations. A peak is stated only if the speeds pass it from well below to well above; a
-        line of two peaks only if its slope is a whole number more exactly than chance would have it.
+        Modes with standard deviations. A peak takes part only if the speeds pass it from well below to well above; a line of
+        two peaks is stated only if its slope is a whole number more exactly than chance would have it.
 
     Raises:
         TypeError: an argument is not of its kind
@@ -188,12 +184,7 @@ def ring_modes(
     >>> [(mode.waves, round(mode.frequency), len(mode.peaks)) for mode in found.modes]
     [(2, 500, 3)]
     """
-    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
-    if not given:
-        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
-    for recording in given:
-        check_recording("recordings", recording)
-    turning = [turning_one_way(each, arguments.text("column", column), arguments.text("angle", angle)) for each in given]
+    turning, unit = turning_of(recordings, column, angle)
     uneven = uneven_orders(turning) if orders is None else []
     if orders is None:
         whole = [
@@ -210,13 +201,12 @@ def ring_modes(
     modes = _modes(peaks, column in STANDING_COLUMNS)
     return RingModes(
         modes,
-        tuple(peaks),
         tuple(spectrum.orders.tolist()),
         spectrum.speed,
         spectrum.amplitude,
         curves,
         column,
-        given[0].unit(column),
+        unit,
         _bearing(uneven, float(np.median([each.per_input for each in turning]))) if uneven else None,
         tuple(dict.fromkeys(each for each in (*remarks, *more, *_alone(peaks, modes)) if each)),
     )
@@ -393,15 +383,14 @@ def _mode(line: _Line) -> RingMode:
 
 
 def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
-    """Return a remark on the peaks through which no line is determined."""
+    """Return a remark on the orders with peaks through which no line is determined."""
     of_modes = [peak for mode in modes for peak in mode.peaks]
-    alone = [peak for peak in peaks if peak not in of_modes]
+    alone = list(dict.fromkeys(number(peak.order, 5) for peak in peaks if peak not in of_modes))
     if not alone:
         return []
-    each = listed([f"{number(peak.order, 5)} at {number(peak.speed * 30.0 / np.pi, 4)} 1/min" for peak in alone])
     return [
-        f"peaks of order {each}: frequency and waves of the modes that they meet are not separable; a mode with n waves has "
-        "|q - n| or q + n times the speed of the peak. A second order q that meets it separates them"
+        f"{named('order', alone)} may pass a mode: no other order confirms it, and its frequency "
+        "and waves are not separable. A second order that passes it, or a slower run-up, separates them"
     ]
 
 
@@ -420,35 +409,23 @@ def words_of(mode: RingMode) -> str:
     return f"{frequency}{waves}, damping ratio {uncertain(mode.damping, mode.damping_sigma)}; peaks of orders {orders}"
 
 
-def words_of_peak(peak: OrderPeak) -> str:
-    """Return a peak in words."""
-    speed = uncertain(peak.speed * 30.0 / np.pi, peak.speed_sigma * 30.0 / np.pi)
-    return f"peak at {speed} 1/min, damping ratio {uncertain(peak.damping, peak.damping_sigma)}"
-
-
 def modes_figure(modes: RingModes) -> Figure:
     """Return the figure of a `RingModes`, as its `plot` describes it."""
     if not modes.orders:
         raise ValueError("no order was followed")
-    with marks.new_figure(0.8 + FIGURE_HEIGHT * min(len(modes.orders), MAX_DRAWN_ORDERS), "Orders over the speed") as figure:
+    with marks.new_figure(PANEL_HEIGHT, "Orders over the speed") as figure:
         draw_modes(figure, modes)
     return figure
 
 
 def draw_modes(figure: Figure, modes: RingModes) -> None:
-    """Draw the amplitude of each order over the speed, with the model and the peaks."""
-    size = np.nanmax(np.abs(modes.amplitude), axis=1)
-    drawn = sorted(np.argsort(-size)[:MAX_DRAWN_ORDERS].tolist(), key=lambda k: modes.orders[k])
-    place = np.argsort(modes.speed, kind="stable")
-    rpm = modes.speed[place] * 30.0 / np.pi
-    panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-    for axes, k in zip(panels, drawn, strict=True):
-        axes.plot(rpm, np.abs(modes.amplitude[k, place]), ".", color=LIGHT["measured"], markersize=3.0, label="measured")
-        marks.curve(axes, rpm, np.abs(modes.fitted[k, place]), color=LIGHT["model"], linewidth=1.0, label="model")
-        for peak in modes.peaks:
-            if peak.order == modes.orders[k]:
-                axes.axvline(peak.speed * 30.0 / np.pi, color=LIGHT["muted"], linestyle="--", linewidth=0.8)
-        axes.set_ylim(bottom=0.0)
-        marks.label_axes(axes, f"order {number(modes.orders[k], 5)}", modes.unit)
-    marks.label_abscissa(panels[-1], "speed [1/min]", "1")
-    marks.legend(figure, panels[0])
+    """Draw the amplitude of each order over the speed, with the model and the peaks of modes."""
+    along = np.argsort(modes.speed, kind="stable")
+    tracks = OrderTracks(
+        np.array(modes.orders), modes.speed[along], np.abs(modes.amplitude[:, along]), modes.column, modes.unit
+    )
+    confirmed = [peak for mode in modes.modes for peak in mode.peaks]
+    peaks = [[peak.speed * 30.0 / np.pi for peak in confirmed if peak.order == order] for order in modes.orders]
+    draw_orders(
+        figure, tracks, Series("speed [1/min]", "1", tracks.speed * 30.0 / np.pi), peaks, np.abs(modes.fitted[:, along])
+    )

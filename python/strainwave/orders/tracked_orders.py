@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from strainwave import arguments, typeset
 from strainwave.drawing import marks
+from strainwave.drawing.simple import Series
 from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
-from strainwave.files.recording import Recording, check_recording
+from strainwave.files.recording import Recording
 from strainwave.messages import listed
-from strainwave.orders.orders_over_speed import orders_over_speed, turning_one_way
+from strainwave.orders.orders_over_speed import orders_over_speed, turning_of
 from strainwave.presentation import Pictured, Row
 
 if TYPE_CHECKING:
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-PANEL_HEIGHT = 1.7  # inches of an order
-MAX_DRAWN_ORDERS = 6
+PANEL_HEIGHT, MARGIN_HEIGHT = 1.7, 0.8  # inches
+MAX_PANELS = 6  # of the strongest orders
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +58,13 @@ class OrderTracks(ComparedByFields, Pictured):
         Raises:
             TypeError, ValueError: an eigenfrequency is no positive number
         """
-        return tracks_figure(self, [arguments.number("eigenfrequencies", each, "rad/s", low=0.0) for each in eigenfrequencies])
+        frequencies = [arguments.number("eigenfrequencies", frequency, "rad/s", low=0.0) for frequency in eigenfrequencies]
+        critical = [[frequency / order for frequency in frequencies] for order in self.order.tolist()]
+        inside = [[speed for speed in speeds if self.speed[0] < speed < self.speed[-1]] for speeds in critical]
+        dashed = "; dashed: critical speeds" if frequencies else ""
+        with marks.new_figure(PANEL_HEIGHT, f"Orders of {self.column.replace('_', ' ')} over the speed{dashed}") as figure:
+            draw_orders(figure, self, Series("speed", "rad/s", self.speed), inside)
+        return figure
 
     def _headline(self) -> str:
         low, high = (typeset.quantity(float(end), "rad/s") for end in (self.speed[0], self.speed[-1]))
@@ -100,41 +107,39 @@ def order_tracks(
     >>> round(float(tracks.speed[largest]), -1), round(float(tracks.amplitude[0, largest]), 1)
     (100.0, 3.0)
     """
-    given = [recordings] if isinstance(recordings, Recording) else list(recordings)
-    if not given:
-        raise ValueError("recordings has none; give one run-up, or several at constant speeds")
-    for recording in given:
-        check_recording("recordings", recording)
     wanted = arguments.positive_series("orders", orders)
-    turning = [turning_one_way(each, arguments.text("column", column), arguments.text("angle", angle)) for each in given]
-    found = orders_over_speed(turning, wanted.tolist())
-    followed = np.isfinite(found.amplitude).any(axis=1)
+    turning, unit = turning_of(recordings, column, angle)
+    spectrum = orders_over_speed(turning, wanted.tolist())
+    followed = np.isfinite(spectrum.amplitude).any(axis=1)
     if not followed.any():
-        why = "; ".join(found.remarks) or "there is no stretch of enough turns and samples"
+        why = "; ".join(spectrum.remarks) or "there is no stretch of enough turns and samples"
         raise ValueError(f"no order can be followed: {why}; record longer, or faster")
-    remarks = list(dict.fromkeys([*(remark for each in turning for remark in each.remarks), *found.remarks]))
+    remarks = list(dict.fromkeys([*(remark for record in turning for remark in record.remarks), *spectrum.remarks]))
     if not followed.all():
-        remarks.append(f"the samples are too far apart for order {listed(f'{order:g}' for order in found.orders[~followed])}")
-    place = np.argsort(found.speed, kind="stable")
-    amplitude = np.abs(found.amplitude[followed][:, place])
-    unit = given[0].unit(column)
-    return OrderTracks(found.orders[followed], found.speed[place], amplitude, column, unit, tuple(remarks))
+        remarks.append(
+            f"the samples are too far apart for order {listed(f'{order:g}' for order in spectrum.orders[~followed])}"
+        )
+    place = np.argsort(spectrum.speed, kind="stable")
+    amplitude = np.abs(spectrum.amplitude[followed][:, place])
+    return OrderTracks(spectrum.orders[followed], spectrum.speed[place], amplitude, column, unit, tuple(remarks))
 
 
-def tracks_figure(tracks: OrderTracks, eigenfrequencies: Sequence[float]) -> Figure:
-    """Return the figure of an `OrderTracks`, as its `plot` describes it."""
-    strongest = np.argsort(-np.nanmax(tracks.amplitude, axis=1))[:MAX_DRAWN_ORDERS]
-    drawn = sorted(strongest.tolist(), key=lambda place: tracks.order[place])
-    title = f"Orders of {tracks.column.replace('_', ' ')} over the speed"
-    critical = "; dashed: critical speeds" if eigenfrequencies else ""
-    with marks.new_figure(0.8 + PANEL_HEIGHT * len(drawn), title + critical) as figure:
-        panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
-        for axes, place in zip(panels, drawn, strict=True):
-            marks.curve(axes, tracks.speed, tracks.amplitude[place], color=LIGHT["measured"])
-            for frequency in eigenfrequencies:
-                if tracks.speed[0] < frequency / tracks.order[place] < tracks.speed[-1]:
-                    axes.axvline(frequency / tracks.order[place], color=LIGHT["muted"], linestyle="--", linewidth=0.8)
-            axes.set_ylim(bottom=0.0)
-            marks.label_axes(axes, f"order {tracks.order[place]:.5g}", tracks.unit)
-        marks.label_abscissa(panels[-1], "speed", "rad/s")
-    return figure
+def draw_orders(
+    figure: Figure, tracks: OrderTracks, speed: Series, dashed: Sequence[Sequence[float]], model: Array | None = None
+) -> None:
+    """Draw the strongest orders over the speed, with dashed lines at speeds of each, and the amplitude of a model, if any."""
+    strongest = np.argsort(-np.nanmax(tracks.amplitude, axis=1))[:MAX_PANELS]
+    figure.set_figheight(MARGIN_HEIGHT + PANEL_HEIGHT * len(strongest))
+    panels = figure.subplots(len(strongest), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, place in zip(panels, sorted(strongest.tolist(), key=lambda place: tracks.order[place]), strict=True):
+        style = {} if model is None else {"linestyle": "", "marker": ".", "markersize": 3.0}
+        marks.curve(axes, speed.values, tracks.amplitude[place], color=LIGHT["measured"], label="measured", **style)
+        if model is not None:
+            marks.curve(axes, speed.values, model[place], color=LIGHT["model"], linewidth=1.0, label="model")
+        for line in dashed[place]:
+            axes.axvline(line, color=LIGHT["muted"], linestyle="--", linewidth=0.8)
+        axes.set_ylim(bottom=0.0)
+        marks.label_axes(axes, f"order {typeset.number(tracks.order[place], 5)}", tracks.unit)
+    marks.label_abscissa(panels[-1], speed.name, speed.unit)
+    if model is not None:
+        marks.legend(figure, panels[0])

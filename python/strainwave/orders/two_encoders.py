@@ -22,7 +22,7 @@ from strainwave.drawing.style import LIGHT
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording, check_recording
 from strainwave.files.units import convert
-from strainwave.messages import listed
+from strainwave.messages import named
 from strainwave.orders.shaft_pair import Pair, Ratio, loads_of, ratio_of, ratio_remarks
 from strainwave.orders.stage import MAX_FREQUENCY, Regressed, StageProblem
 from strainwave.orders.turning import Evenly, beginning, direction, evenly, reach_of, smooth_speed, unwrapped
@@ -243,14 +243,19 @@ def transmission_error(
         hertz = fit.stage.frequency / (tau * pair.record.step * every)
         frequency = MeasuredValue(hertz, hertz * fit.spread[0], "Hz")
         damping = MeasuredValue(fit.stage.damping, fit.stage.damping * fit.spread[1], "1")
-    speeds, vibrates = _speeds_of_amplitudes(fit, pair) if chosen else "", fit.vibrates and not _at_one_speed(pair)
+    speeds = _speeds_of_amplitudes(fit, pair) if chosen else ""
+    vibrates = bool(speeds) and fit.vibrates and not _at_one_speed(pair)
+    orders_of_error = tuple(each for each in _orders(chosen, fit, false_alarm) if not (vibrates and each.shaft == "mesh"))
     remarks = [*ratio_remarks(measured, ratio, ratio_option), *left_out, *of_weight]
     remarks += _stage_remarks(fit, pair, every, chosen, speeds)
+    if vibrates and (hidden := [f"{order:.5g}" for order, shaft in chosen if shaft == "mesh"]):
+        why = "orders of the input whose amplitudes change with the speed have side lines there"
+        remarks.append(f"not determined: {named('order', hidden)}; {why}")
     if not pair.reverses:
         remarks.append("the shafts turn one way only: lost motion is not determined")
     return TransmissionError(
         ratio=measured,
-        orders=tuple(_orders(chosen, fit, false_alarm)),
+        orders=orders_of_error,
         lost_motion=lost if pair.reverses else None,
         windup=_windup(pair, whole - error, load, recording),
         natural_frequency=frequency,
@@ -260,7 +265,7 @@ def transmission_error(
         curves=_curves(pair, whole - whole.mean(), error, fit.residual, every),
         remarks=(*pair.record.remarks, *remarks),
         speeds=speeds,
-        vibrates=bool(speeds) and vibrates,
+        vibrates=vibrates,
     )
 
 
@@ -284,11 +289,11 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     chosen: list[tuple[float, Shaft]] = [(float(order), "input") for order in wanted if lowest <= order < highest]
     remarks = []
     if missed := [f"{order:g}" for order in wanted if order >= highest]:
-        remarks.append(f"orders {listed(missed)} pass faster than the samples can follow; record faster, or turn slower")
+        remarks.append(f"the samples do not follow {named('order', missed)} at this speed; record faster, or turn slower")
     if missed := [f"{order:g}" for order in wanted if order < min(lowest, highest)]:
         remarks.append(
-            f"orders {listed(missed)} are not determined: an order needs {MIN_ORDER_PERIODS:g} periods and the input a whole "
-            f"turn, and it turns {turns_in:.2g} revolutions"
+            f"not determined: {named('order', missed)}; an order needs {MIN_ORDER_PERIODS:g} periods and a whole turn of the "
+            f"input, which turns {turns_in:.2g} revolutions"
         )
     if chosen and turns_out < MIN_ORDER_PERIODS:
         remarks.append(f"orders of the output need {MIN_ORDER_PERIODS:g} revolutions of it; the record has {turns_out:.3g}")
@@ -302,7 +307,7 @@ def _chosen(pair: Pair, wanted: Array, ratio: Ratio, given: float | None) -> tup
     elif chosen and ratio.of_strain_wave:
         near = 2.0 * (1.0 - 1.0 / ratio.used)
         remarks.append(
-            f"the output turns {turns_out:.2g} of a revolution: orders 2 and {near:.4g}, of the wave generator against either "
+            f"the output turns {turns_out:.4g} of a revolution: orders 2 and {near:.4g}, of the wave generator against either "
             "spline, are separated after a whole one"
         )
     return chosen, remarks
@@ -410,11 +415,12 @@ def _stage_remarks(fit: Regressed, pair: Pair, every: int, chosen: Sequence[tupl
         return ["without time nothing is known of vibration: amplitudes are those at the speeds of the record"]
     if not speeds:
         return []
-    why = "one speed does not determine how the output vibrates" if _at_one_speed(pair) else WHY_AMPLITUDES_CHANGE
-    return [
-        f"amplitudes are those measured at {speeds}: {why}, and they are not corrected for it; if speeds from slow to fast are "
-        "in one record, they are"
-    ]
+    why, remedy = (
+        ("one speed does not determine how the output vibrates", "if speeds from slow to fast are in one record, they are")
+        if _at_one_speed(pair)
+        else (WHY_AMPLITUDES_CHANGE, "those of a slow run are the gear's")
+    )
+    return [f"amplitudes are those measured at {speeds}: {why}, and they are not corrected for it; {remedy}"]
 
 
 def _curves(pair: Pair, error: Array, orders: Array, residual: Array, every: int) -> Recording:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from importlib import metadata
 from itertools import pairwise
 from math import isfinite, tau
@@ -38,18 +38,25 @@ STRIP_HEIGHTS = " ▁▂▃▄▅▆▇█"
 RAD_PER_MICRORADIAN = 1e-6
 
 
-def orders_report(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> str:
+def orders_report(
+    found: Sequence[OrdersFound], provenance: Provenance | None = None, together: OrdersFound | None = None
+) -> str:
     """Return the page, as one HTML file that needs nothing else.
 
     Args:
         found: of each recording
         provenance: command, date and files of the page, if they are to be shown
+        together: of all recordings together; first on the page
 
     Returns:
         HTML; the same for the same arguments
     """
-    recordings = [_section(each, place) for place, each in enumerate(found)]
+    recordings = [_section(each, place) for place, each in enumerate(_all(together, found))]
     return render("orders.html.jinja", {"recordings": recordings}, provenance)
+
+
+def _all(together: OrdersFound | None, found: Sequence[OrdersFound]) -> list[OrdersFound]:
+    return [*found] if together is None else [together, *found]
 
 
 def _section(found: OrdersFound, place: int) -> dict[str, Any]:
@@ -180,8 +187,12 @@ def _remarks(found: OrdersFound) -> list[str]:
 # ---- On a terminal ---------------------------------------------------------------------------------------------------
 
 
-def orders_summary(found: Sequence[OrdersFound]) -> str:
-    """Return the results as lines of text."""
+def orders_summary(found: Sequence[OrdersFound], together: OrdersFound | None = None) -> str:
+    """Return the results as lines of text; of recordings together without each of them, whose lines are on the page."""
+    if together is not None:
+        shared = [remark for remark in _remarks(found[0]) if all(remark in _remarks(each) for each in found[1:])]
+        single = f"the results of each recording are in report.html{', with its other notes' if shared else ', with its notes'}"
+        found = [replace(together, remarks=(*together.remarks, *(f"of each recording: {each}" for each in shared), single))]
     lines: list[str] = []
     for each in found:
         lines += ["", each.name] if lines else [each.name]
@@ -263,7 +274,7 @@ def _modes_words(modes: RingModes) -> Iterator[str]:
     for mode in modes.modes:
         yield f"mode at {words_of(mode)}"
     if not modes.modes:
-        yield "no mode is passed by an order from below to above"
+        yield "no mode is determined"
     if modes.bearing is not None:
         yield f"bearing: {modes.bearing._headline()}"
 
@@ -296,9 +307,12 @@ def _strip(ripple: Ripple) -> str:
 # ---- As files --------------------------------------------------------------------------------------------------------
 
 
-def orders_files(found: Sequence[OrdersFound], provenance: Provenance | None = None) -> dict[str, str | bytes]:
+def orders_files(
+    found: Sequence[OrdersFound], provenance: Provenance | None = None, together: OrdersFound | None = None
+) -> dict[str, str | bytes]:
     """Return the numbers as JSON, spectra and curves as CSV, and last the page, by file name."""
-    files: dict[str, str | bytes] = {"results.json": results_json({"recordings": [_results(each) for each in found]})}
+    results = [_results(each) for each in _all(together, found)]
+    files: dict[str, str | bytes] = {"results.json": results_json({"recordings": results})}
     stems = [Path(each.name).stem for each in found]
     for place, (each, stem) in enumerate(zip(found, stems, strict=True)):
         name = stem if stems.count(stem) == 1 else f"{stem}-{place + 1}"
@@ -306,7 +320,7 @@ def orders_files(found: Sequence[OrdersFound], provenance: Provenance | None = N
             files[f"{name}-error.csv"] = _csv(each.transmission.curves)
         if each.ripple is not None:
             files[f"{name}-spectrum.csv"] = _csv(each.ripple.spectrum)
-    return files | {"report.html": orders_report(found, provenance)}
+    return files | {"report.html": orders_report(found, provenance, together)}
 
 
 def _results(found: OrdersFound) -> dict[str, Any]:
@@ -354,7 +368,7 @@ def spectrum_figure(ripple: Ripple, name: str) -> str:
 
 
 def map_figure(ripple: Ripple, name: str) -> str:
-    """Return the figure of order against time; empty if the speed is constant, or no time is known."""
+    """Return the figure of order against time; empty if the speed is constant, no time is known, or the samples are too few."""
     curves = ripple.curves
     if "time" not in curves or not ripple.lines:
         return ""
@@ -367,6 +381,8 @@ def map_figure(ripple: Ripple, name: str) -> str:
     wave = curves["series"] - curves["smooth"]
     edges = np.linspace(0, len(wave), TIME_BLOCKS + 1).astype(int)
     blocks = [slice(low, high) for low, high in pairwise(edges.tolist()) if high - low >= MIN_BLOCK_SAMPLES]
+    if not blocks:
+        return ""
     rows = []
     for block in blocks:
         window = np.hanning(block.stop - block.start)

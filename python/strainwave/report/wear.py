@@ -108,7 +108,13 @@ def _figure(tests: WearTests, life: WearLife) -> str:
             axes.axhline(trend.limit, color=LIGHT["muted"], linewidth=0.9, label="limit")
             axes.plot(line, trend.start + 1e6 * trend.rate * line, color=LIGHT["model"], label="line")
             axes.plot(work, tests.values[trend.name], "o", color=LIGHT["measured"], label="tests")
-            marks.label_axes(axes, trend.name, unit, "transmitted work", "MJ")
+            if isfinite(trend.high):
+                life_left = work.max() + 1e-6 * np.array([trend.low, trend.high])
+                drawn = np.minimum(life_left, work.max() + MAX_DRAWN_LIFE * float(np.ptp(work)))
+                if drawn[0] < drawn[1]:
+                    axes.plot(drawn, [trend.limit] * 2, color=LIGHT["model"], linewidth=4.0, alpha=0.4, label="life, 95 %")
+            marks.label_axes(axes, trend.name, unit)
+        marks.label_abscissa(every[-1], "transmitted work", "MJ")
         marks.legend(figure, every[0])
 
     return figures.inline(draw, (FIGURE_WIDTH, 0.8 + 1.8 * len(life.trends)), "wear", "Wear over the transmitted work")

@@ -573,5 +573,5 @@ def ensemble_figure(ensemble: Ensemble, names: Sequence[str]) -> Figure:
             axis.margins(x=0.01)
             marks.label_axes(axis, in_words(name), units[name])
         marks.label_abscissa(axes[-1], "time", "s")
-        marks.legend(figure, axes[0], below=True)
+        marks.legend(figure, axes[0])
     return figure

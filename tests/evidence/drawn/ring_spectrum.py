@@ -1,9 +1,8 @@
-"""Records of a flexible ring by finite elements: peaks, modes and bearing that its orders over the speed determine.
+"""Records of a flexible ring by finite elements: modes and bearing that its orders over the speed determine.
 
-Records come from `tests.evidence.flexible_ring`, by constant speeds or by run-ups. The truth of a peak is the place where an
-eigenline of the gear, in the frame of the lobes, meets its order, with the damping there. That of a mode is the tangent of an
-eigenline where one of its orders meets it: frequency at speed zero, slope and damping. A bearing is right with its number of
-balls.
+Records come from `tests.evidence.flexible_ring`, by constant speeds or by run-ups. The truth of a mode is the tangent of an
+eigenline of the gear, in the frame of the lobes, where one of its orders meets it: frequency at speed zero, slope and damping.
+A bearing is right with its number of balls.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from strainwave.files.recording import Recording
 from strainwave.orders.bearing_candidates import BearingCandidates
-from strainwave.orders.order_peaks import OrderPeak
 from strainwave.orders.ring_modes import RingMode, RingModes, ring_modes
 
 from tests.evidence.drawn.outcome import Outcome, compared
@@ -44,21 +42,6 @@ def crossings(lines: Lines, order: float) -> Iterator[Crossing]:
         values = [lines.slope, lines.natural_frequency, lines.damping]
         at = [(1.0 - share) * each[place, line] + share * each[place + 1, line] for each in values]
         yield Crossing(*map(float, at), float((1.0 - share) * lines.speed[place] + share * lines.speed[place + 1]))
-
-
-def judged_peak(peak: OrderPeak, lines: Lines) -> Outcome:
-    """Return whether a peak is where its order meets an eigenline."""
-    sigma = float(np.hypot(peak.speed_sigma, peak.order_sigma * peak.speed / peak.order))
-    met = min(crossings(lines, peak.order), key=lambda crossing: abs(crossing.speed - peak.speed), default=None)
-    if met is None:
-        return Outcome("wrong", f"order {peak.order:.4g} meets no eigenline")
-    name = f"order {peak.order:.4g}, "
-    return compared(
-        [
-            (f"{name}speed", peak.speed, sigma, met.speed),
-            (f"{name}damping", peak.damping, peak.damping_sigma, met.damping),
-        ]
-    )
 
 
 def judged_mode(mode: RingMode, lines: Lines) -> Outcome:
@@ -101,11 +84,10 @@ def identified(experiment: Experiment) -> RingModes:
 
 
 def outcome(seed: int) -> Outcome:
-    """Return whether every peak, mode and bearing that is stated is true; refused if none is."""
+    """Return whether every mode and bearing that is stated is true; refused if none is."""
     experiment = drawn_experiment(seed)
     found = identified(experiment)
-    outcomes = [judged_peak(peak, experiment.lines) for peak in found.peaks]
-    outcomes += [judged_mode(mode, experiment.lines) for mode in found.modes]
+    outcomes = [judged_mode(mode, experiment.lines) for mode in found.modes]
     outcomes.append(judged_bearing(found.bearing, experiment.gear))
     wrong = [each.message for each in outcomes if each.verdict == "wrong"]
     if wrong:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import strainwave as sw
+from strainwave.commands.output import write_report
 
 from tests.python.command import refused, strainwave
 
@@ -89,3 +90,10 @@ def test_a_ratio_given_as_a_constant_is_that_of_the_option(folder: Path) -> None
         assert "ratio −80 (measured" in result.stdout, result.stderr
         numbers = json.loads((folder / "given" / "results.json").read_text())["recordings"]
         assert numbers[0]["ripple"]["ratio"] == 80.0
+
+
+def test_many_files_of_a_report_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_report(tmp_path, {**{f"{place}-error.csv": "" for place in range(10)}, "report.html": ""}, "summary")
+    assert capsys.readouterr().out.endswith(
+        "report.html, and beside it " + "".join(f"{place}-error.csv, " for place in range(8)) + "2 more\n"
+    )

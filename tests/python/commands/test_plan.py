@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +56,7 @@ def test_a_data_sheet_is_planned_for_too(tmp_path: Path) -> None:
         ),
         ((*FRICTION, "--criterion", "E"), '--criterion = "E" must be one of A, D'),
         ((), "Missing option '--want'"),
+        (("--want", "loss"), "--want loss plans by loops that were measured; give them, as --loop"),
     ],
 )
 def test_what_makes_no_plan_is_refused_in_words_of_the_command(tmp_path: Path, options: tuple[str, ...], message: str) -> None:
@@ -83,7 +85,16 @@ def test_loops_that_were_measured_lead_to_those_that_separate_their_sources(tmp_
     np.savetxt(tmp_path / "loop.csv", columns, delimiter=",", header=header, comments="")
     said = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "loop.csv", folder=tmp_path)
     assert "at the output with the input" in said.stdout
-    assert "bearing, dry" in said.stdout
+    assert re.search(r"bearing, dry +± 0\.0\d+, was ± 0\.7", said.stdout)  # and no value: the loop divides a sum in some way
+    named = "\n".join(["Winkel Motor [rad];Moment Motor [Nm]", *(f"{a};{b}".replace(".", ",") for a, b in columns), ""])
+    (tmp_path / "named.csv").write_text(named)
+    in_german = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "named.csv", folder=tmp_path)
+    assert in_german.stdout.splitlines()[:8] == said.stdout.splitlines()[:8]
+    twice = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "loop.csv", "--loop", "named.csv", folder=tmp_path)
+    assert "named.csv and loop.csv contain the same measurement" in twice.stderr
+    (tmp_path / "bare.csv").write_text((tmp_path / "loop.csv").read_text().replace(" [N.m]", ""))
+    bare = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "bare.csv", folder=tmp_path)
+    assert "bare.csv: input_torque has no unit" in bare.stderr
     refused = strainwave("plan", "hfuc-25-100", "--want", "bearing", "--loop", "loop.csv", folder=tmp_path)
     assert '"bearing" is no source of these loops' in refused.stderr
 
@@ -96,11 +107,11 @@ def test_loops_that_were_measured_lead_to_those_that_separate_their_sources(tmp_
         (("--speed-limit", "50 rpm"), "leave out --speed-limit"),
         (("--noise", "torsion=1"), "leave out --noise"),
         (("--experiment", "friction"), "--loop plans torsion loops; leave out other experiments"),
-        ((), 'none.csv: no column "input_angle"; there are work, play'),
+        ((), "none.csv: a torsion loop or branch needs one angle: "),
     ],
 )
 def test_what_a_plan_of_loops_does_not_use_is_refused(tmp_path: Path, options: tuple[str, ...], message: str) -> None:
-    (tmp_path / "none.csv").write_text("work [J],play [rad]\n0,1\n1,2\n")
+    (tmp_path / "none.csv").write_text("speed [rad/s],torque [N.m]\n1,2\n2,3\n3,4\n4,5\n")
     said = strainwave("plan", "hfuc-25-100", "--want", "loss", "--loop", "none.csv", *options, folder=tmp_path)
     assert (said.returncode, said.stdout) == (2, "")
     assert message in said.stderr

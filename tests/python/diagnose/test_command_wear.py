@@ -40,7 +40,7 @@ def worn(work: float, folder: Path, source: str = "identified from loop.csv") ->
 
 def test_the_example_of_the_page_prints_what_the_page_has(tmp_path: Path) -> None:
     section = PAGE.read_text().partition("### Wear from files")[2]
-    (tmp_path / "wear.csv").write_text(section.partition("```csv\n")[2].partition("```")[0])
+    (tmp_path / "wear.csv").write_text(section.partition("```text\n")[2].partition("```")[0])
     command, _, printed = section.partition("```console\n$ ")[2].partition("```")[0].partition("\n")
     done = strainwave(*shlex.split(command)[1:], folder=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -72,6 +72,19 @@ def test_hours_stand_for_the_work_of_a_duty(tmp_path: Path) -> None:
     tests = read_wear_tests([path], ["play"], work_per_hour=1e4)
     assert tests.work == pytest.approx([0.0, 1e6, 2e6])
     assert np.ptp(tests.values["play"]) == pytest.approx(6e-5)
+
+
+def test_the_noise_of_gears_is_at_least_their_standard_deviation(tmp_path: Path) -> None:
+    """Three gears on a line by chance, whose stiffness is known to ± 10 N·m/rad."""
+    files = [worn(work, tmp_path) for work in WORK[:3]]
+    tests = read_wear_tests(files, ["stiffness"], "0,1e6,2e6")
+    assert tests.sigma == {"stiffness": pytest.approx(10.0)}
+    for sigma, rate_sigma in ((tests.sigma, 10.0 / np.sqrt(2e12)), ({}, 0.0)):
+        life = sw.diagnose.wear_life(tests.work, tests.values, {"stiffness": 15e3}, resolution={"stiffness": 0.0}, sigma=sigma)
+        assert life.trends[0].rate_sigma == pytest.approx(rate_sigma, abs=1e-9)
+        assert (life.high - life.low > 1e5) is bool(sigma)
+    with pytest.raises(ValueError, match="is given twice; give the gear file of each test once"):
+        read_wear_tests([*files[:2], files[0]], ["stiffness"], "0,1e6,2e6")
 
 
 def test_a_table_in_the_unit_of_the_report_has_the_resolution_that_was_written(tmp_path: Path) -> None:

@@ -77,6 +77,16 @@ def test_a_limit_that_the_first_test_is_past_is_refused() -> None:
         sw.diagnose.wear_life([0.0, 1e6, 2e6], values, {"stiffness": 25e3})
 
 
+def test_a_life_far_beyond_the_tests_is_stated_as_assumed() -> None:
+    work = [0.0, 1e6, 2e6, 3e6]
+    play = [1.0e-4, 1.31e-4, 1.58e-4, 1.92e-4]
+    assert sw.diagnose.wear_life(work, {"play": play}, {"play": 4e-4}).remarks == ()
+    (remark,) = sw.diagnose.wear_life(work, {"play": play}, {"play": 4e-3}).remarks
+    assert "the life is 42 times the work between the first and the last test, 3 MJ" in remark.replace(
+        "\N{NO-BREAK SPACE}", " "
+    )
+
+
 def test_a_quantity_that_moves_away_from_its_limit_promises_nothing() -> None:
     life = sw.diagnose.wear_life([0.0, 1e6, 2e6, 3e6], {"stiffness": [1.0e4, 1.1e4, 1.2e4, 1.3e4]}, {"stiffness": 8e3})
     assert (life.low, life.high, life.limited_by) == (0.0, inf, "")
@@ -120,7 +130,8 @@ def test_transmitted_work_is_that_of_a_sine_under_gravity() -> None:
 @pytest.mark.parametrize(
     ("work", "tests", "limits", "why"),
     [
-        ([0.0, 1.0], {"play": [1.0, 2.0]}, {"play": 3.0}, "need 3 tests; there are 2"),
+        (np.arange(10_001.0), {"play": np.arange(10_001.0)}, {"play": 1e5}, "one row for each test, not a log"),
+        ([0.0, 1.0], {"play": [1.0, 2.0]}, {"play": 3.0}, "need 3 tests, not 2"),
         ([1.0, 1.0, 1.0], {"play": [1.0, 2.0, 3.0]}, {"play": 3.0}, "all tests are after the same work, 1 J"),
         ([0.0, 1.0, 2.0], {"wobble": [1.0, 2.0, 3.0]}, {"wobble": 3.0}, "give one or more of play, amplitude, friction"),
         ([0.0, 1.0, 2.0], {}, {}, "tests has the quantities none"),

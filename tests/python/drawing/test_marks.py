@@ -57,7 +57,7 @@ def test_a_legend_lies_outside_all_axes_and_the_title(below: bool) -> None:
         axes = figure.subplots()
         for place in range(5):
             axes.plot([0.0, 1.0], [0.0, place], label=f"curve number {place}")
-        marks.legend(figure, axes, below=below)
+        marks.legend(figure, axes)
     figure.savefig(BytesIO(), format="png")
     box = figure.legends[0].get_window_extent()
     assert not box.overlaps(axes.get_window_extent())

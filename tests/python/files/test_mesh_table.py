@@ -129,9 +129,13 @@ def test_arrays_are_checked() -> None:
 def test_modes_with_their_mass_or_their_shape(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("frequency [kHz],waves [1],damping [1],mass [g]\n1.8,2,0.01,50\n5.1,3,0.02,40\n")
     (tmp_path / "b.csv").write_text("frequency [Hz],ND [1],damping [1],shape_squared [1/kg]\n1800,2,0.01,20\n5100,3,0.02,25\n")
-    first, second = ModeTable.read(tmp_path / "a.csv"), ModeTable.read(tmp_path / "b.csv", columns={"waves": "ND"})
-    for table in (first, second):
-        assert table.frequency.tolist() == [1800.0, 5100.0]
+    angular = [2 * np.pi * 1800.0, 2 * np.pi * 5100.0]  # and shares without a unit
+    rows = f"frequency [rad/s],ND,damping,mass [kg]\n{angular[0]},2,0.01,0.05\n{angular[1]},3,0.02,0.04\n"
+    (tmp_path / "c.csv").write_text(rows)
+    first = ModeTable.read(tmp_path / "a.csv")
+    second, third = (ModeTable.read(tmp_path / name, columns={"waves": "ND"}) for name in ("b.csv", "c.csv"))
+    for table in (first, second, third):
+        assert table.frequency.tolist() == pytest.approx([1800.0, 5100.0], rel=1e-15)
         assert table.waves.tolist() == [2.0, 3.0]
         np.testing.assert_allclose(table.mass, [0.05, 0.04], rtol=1e-15)
         np.testing.assert_allclose(table.compliance[0], 1.0 / (0.05 * (2 * np.pi * 1800.0) ** 2), rtol=1e-14)

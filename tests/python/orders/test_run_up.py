@@ -36,7 +36,12 @@ def found_in(folder: Path, rows: np.ndarray) -> OrdersFound:
 @pytest.mark.slow("orders")
 @pytest.mark.parametrize("seed", [1, 2])
 def test_orders_resonance_and_mains_are_told_apart(tmp_path: Path, seed: int) -> None:
-    passing = found_in(tmp_path, vibration(27.0, 0.04, 35.0, seed)).run_up
+    found = found_in(tmp_path, vibration(27.0, 0.04, 35.0, seed))
+    assert found.ripple is not None
+    strongest = [line for line in found.ripple.lines if line.kind == "order"][:2]
+    assert [round(line.order) for line in strongest] == [3, 1]
+    assert all(abs(line.order - round(line.order)) < 2.0 * line.order_sigma < 0.1 for line in strongest)
+    passing = found.run_up
     assert passing is not None
     assert [each.order for each in passing.orders] == [3.0, 1.0]
     assert passing.frequency == pytest.approx(27.0, abs=3.0 * passing.frequency_sigma)

@@ -244,6 +244,19 @@ def test_above_its_resonance_a_ramp_shows_amplitudes_at_its_speeds_alone() -> No
     assert any("they change with the speed" in remark for remark in result.remarks)
 
 
+def test_an_order_that_passes_a_resonance_has_side_lines_that_are_no_orders_of_the_mesh() -> None:
+    """Its amplitude and phase over the run make lines beside it, as that of the other spline would be."""
+    time = np.arange(0.0, 40.0, 5e-3)
+    speed = 4.0 + 0.725 * time
+    theta = 4.0 * time + 0.3625 * time**2
+    passing = 1.0 / (1.0 - (2.0 * speed / 50.0) ** 2 + 0.06j * (2.0 * speed / 50.0))
+    error = 1e-5 * np.real(passing * np.exp(2j * theta)) + np.random.default_rng(0).normal(0.0, 1e-7, len(time))
+    result = error_of({"time": time, "input_angle": theta, "output_angle": theta / 50.0 + error})
+    assert result.vibrates
+    assert not [each for each in result.orders if each.shaft == "mesh"]
+    assert any("not determined: orders 0.98, 1.96, 3.92; orders of the input" in remark for remark in result.remarks)
+
+
 @pytest.mark.slow("orders")
 @pytest.mark.parametrize(
     ("seed", "verdict"),

@@ -23,6 +23,7 @@ from strainwave.identification.experiments.experiment import changing, sensible
 from strainwave.identification.fitting.unknowns import Estimate
 from strainwave.statistics.covariance import covariance_of
 from strainwave.statistics.linear_fit import normal_inverse, solved
+from strainwave.statistics.runs import runs_of
 from strainwave.statistics.scale import ONE_SIGMA, noise_sigma, student
 
 Array = NDArray[np.float64]
@@ -155,15 +156,13 @@ def one_way(path: Array, turns: list[int]) -> Array:
 def _ramps(torque: Array) -> list[slice]:
     """Return stretches of one sign, each from where its size was least to its end."""
     size, level = np.abs(torque), 0.1 * float(np.abs(torque).max())
-    high = np.concatenate([[False], size > level, [False]])
-    edges = np.flatnonzero(np.diff(high.astype(int)))
     ramps = []
-    for first, last in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        before = first
+    for high in runs_of(size > level):
+        before = high.start
         while before > 0 and size[before - 1] < size[before]:
             before -= 1
-        if last - before >= MIN_SAMPLES_OF_RAMP:
-            ramps.append(slice(before, last))
+        if high.stop - before >= MIN_SAMPLES_OF_RAMP:
+            ramps.append(slice(before, high.stop))
     return ramps
 
 

@@ -168,7 +168,7 @@ def _is_another_load(stretches: Sequence[tuple[Array, Array | None]], levels: Le
     of_residual = shape(residual, angle)
     if of_residual is None or of_residual.chance > MAX_CHANCE_OF_GRAVITY:
         return False
-    columns = np.repeat(np.eye(len(left)), [len(each) for each in left], axis=0)
+    columns = np.repeat(np.eye(len(left)), [len(part) for part in left], axis=0)
     waves = [wave(order * angle) for order in (1.0, 2.0) for wave in (np.cos, np.sin)]
     moved = solved(np.column_stack((columns, *waves)), residual)[len(left) : len(left) + 2]
     return bool(np.hypot(*moved) > MAX_CHANGE_OF_GRAVITY * np.hypot(levels.cosine, levels.sine))
@@ -222,20 +222,20 @@ def _with_gravity(
     torque = np.concatenate([torque for torque, _ in stretches])
     symmetry = np.column_stack((before, np.zeros((len(before), 4))))
 
-    def left_by(columns: Array, found: Array) -> list[Array]:
-        return np.split(torque - columns @ found, np.cumsum(counts)[:-1])
+    def left_by(columns: Array, coefficients: Array) -> list[Array]:
+        return np.split(torque - columns @ coefficients, np.cumsum(counts)[:-1])
 
     first = left_by(jacobian, solved(jacobian, torque))
     alike = sum(float(each @ each) * max(correlation_length(each), 1.0) for each in first) / len(torque)
     scale = max(float(np.sqrt(alike)), 1e-300)  # of a row, so that rows that are alike do not outweigh what is assumed
     rows, values = np.concatenate((jacobian / scale, symmetry)), np.concatenate((torque / scale, np.zeros(len(symmetry))))
-    found = solved(rows, values)
-    residuals = left_by(jacobian, found)
+    coefficients = solved(rows, values)
+    residuals = left_by(jacobian, coefficients)
     covariance, _ = posterior_of(jacobian / scale, [each[np.newaxis] / scale for each in residuals], symmetry)
-    cosine, sine = found[many : many + 2].tolist()
-    shift = solved(rows[:, : many + 2], values)[many:] - found[many : many + 2]
+    cosine, sine = coefficients[many : many + 2].tolist()
+    shift = solved(rows[:, : many + 2], values)[many:] - coefficients[many : many + 2]
     of_cosine, of_sine = np.hypot(np.sqrt(np.diag(covariance)[many : many + 2]), shift).tolist()
-    levels = Levels(found[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine))
+    levels = Levels(coefficients[:many], covariance[:many, :many], cosine, sine, (of_cosine, of_sine))
     alone = np.column_stack((columns, of_friction))
     return levels, residuals, left_by(alone, solved(alone, torque))
 

@@ -18,6 +18,7 @@ from strainwave.identification.fitting.fit import Fit
 from strainwave.identification.results.file_result import Check, FileEstimate
 from strainwave.messages import as_option
 from strainwave.statistics.linear_fit import solved
+from strainwave.statistics.runs import runs_of
 
 Array = NDArray[np.float64]
 
@@ -225,13 +226,12 @@ def clipping(recording: Recording, source: str) -> Check:
     path, values, unit = recording[angle], recording[torque], recording.unit(torque)
     share, message = 0.0, ""
     for end in (values.max(), values.min()):
-        at_end = np.concatenate([[False], np.abs(values - end) <= END_TOLERANCE * abs(end), [False]])
-        for first, last in np.flatnonzero(np.diff(at_end.astype(int))).reshape(-1, 2):
-            moved = float(np.ptp(path[first:last]) / max(np.ptp(path), 1e-300))
-            if last - first >= MIN_CLIPPED_SAMPLES and moved > share:
+        for clipped in runs_of(np.abs(values - end) <= END_TOLERANCE * abs(end), MIN_CLIPPED_SAMPLES):
+            moved = float(np.ptp(path[clipped]) / max(np.ptp(path), 1e-300))
+            if moved > share:
                 share = moved
                 message = (
-                    f"{torque} stays at {end:.4g} {unit} for {last - first} samples while {angle} goes on by "
+                    f"{torque} stays at {end:.4g} {unit} for {clipped.stop - clipped.start} samples while {angle} goes on by "
                     f"{100.0 * moved:.0f} % of its range: the sensor or the amplifier is at its limit"
                 )
     return Check(

@@ -78,7 +78,7 @@ def plan_loops(
             raise ValueError(f"wanted: {quoted(name)} is no source of these loops; they are {known}")
     chosen = names if ALL_SOURCES in asked else [name for name in names if name in asked]
     places = [names.index(name) for name in chosen]
-    cost = np.array([_duration(each, further.temperature) for each in further.loops])
+    cost = np.array([_duration(loop, further.temperature) for loop in further.loops])
     budget = arguments.seconds("time", time)
     taken, covariance = _taken(further, places, cost, budget)
     steps = tuple(
@@ -141,6 +141,7 @@ def _expectations(further: FurtherLoops, covariance: Array, wanted: Sequence[str
     measured = {share.name: (share.share, share.sigma) for share in further.shares.shares}
     for place, name in enumerate(further.sources):
         value, before = measured.get(name, (np.nan, np.inf))
+        value = value if before <= MAX_SHARE_SIGMA else np.nan  # the loops so far divide a sum in some way
         sigma, after = float(np.sqrt(covariance[place, place])), before
         if sigma < (1.0 - MIN_GAIN_OF_SHARE) * np.sqrt(further.covariance[place, place]):
             after = min(float(np.hypot(sigma, further.floors[place])), before)
@@ -154,6 +155,6 @@ def _notes(further: FurtherLoops) -> Iterator[str]:
     yield f"shares of the loss of a cycle, {quantity(further.shares.loss, 'J')}, of the loop of {further.shares.loop}"
     forms = percent(float(further.floors.max()))
     yield f"a share is separated below ± {percent(MAX_SHARE_SIGMA)}; widths that depart from their forms leave ± {forms}"
-    if any(each.temperature > further.temperature for each in further.loops):
+    if any(loop.temperature > further.temperature for loop in further.loops):
         yield f"{WARMING_TIME / 60.0:.0f} min assumed until the gear is warmer throughout"
     yield from further.shares.remarks

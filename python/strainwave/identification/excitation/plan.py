@@ -79,7 +79,7 @@ class Expectation(Presented):
     """Uncertainty of a parameter before and after a plan.
 
     Attributes:
-        path, unit, value: the parameter in the model; not a number if nothing was measured of it
+        path, unit, value: the parameter in the model; not a number if the measurements so far do not determine it
         before, after: standard deviation, in its unit; infinite where it is not known
         wanted: True if the plan was made for it
         why: the limit of its uncertainty, if that exceeds 10 %; else empty
@@ -165,21 +165,23 @@ class ExperimentPlan(Pictured):
         yield from self.notes
 
     def plot(self) -> Figure:
-        """Return a figure of the relative standard deviation of each parameter, before and after the measurements.
+        """Return a figure of the standard deviation of each parameter over its value, or of each share, before and after.
 
         Raises:
             ValueError: no parameter has a finite one after them
         """
         from strainwave.drawing.simple import bars_figure
 
-        determined = [each for each in self.expectations if np.isfinite(each.after / each.value if each.value else np.nan)]
+        of_shares = all(each.unit == "1" for each in self.expectations)
+        sizes = {each.path: 1.0 if of_shares else abs(each.value) for each in self.expectations}
+        determined = [each for each in self.expectations if sizes[each.path] > 0.0 and np.isfinite(each.after)]
         if not determined:
             raise ValueError("the plan determines no parameter, so there is nothing to draw")
-        before = [100.0 * each.before / abs(each.value) if np.isfinite(each.before) else np.nan for each in determined]
-        after = [100.0 * each.after / abs(each.value) for each in determined]
+        before = [100.0 * each.before / sizes[each.path] if np.isfinite(each.before) else np.nan for each in determined]
+        after = [100.0 * each.after / sizes[each.path] for each in determined]
         names = [each.path for each in determined]
         bars = ({"before": before} if np.isfinite(before).any() else {}) | {"after": after}
-        return bars_figure("Standard deviation over the value", names, bars, "%")
+        return bars_figure(f"Standard deviation {'of each share' if of_shares else 'over the value'}", names, bars, "%")
 
 
 def too_short(budget: float, cost: NDArray[np.float64]) -> dict[str, str]:

@@ -63,7 +63,7 @@ class LossLoop(ComparedByFields):
             raise ValueError("it reverses at several amplitudes; give a recording for each amplitude")
         first = 1 if away[0] else 0
         ways = [slice(begin, end) for begin, end in zip(ends[first:-1], ends[first + 1 :], strict=True)]
-        if len(ways) < 2 or min(each.stop - each.start for each in ways[:2]) < MIN_SAMPLES_PER_WAY:
+        if len(ways) < 2 or min(way.stop - way.start for way in ways[:2]) < MIN_SAMPLES_PER_WAY:
             raise ValueError(f"the width of a loop needs ways up and down of at least {MIN_SAMPLES_PER_WAY} samples each")
         sense, rate = np.zeros(len(loop.twist)), np.full(len(loop.twist), np.nan)
         time = None

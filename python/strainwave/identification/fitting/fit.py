@@ -19,7 +19,8 @@ from strainwave.identification.experiments.drive_log import DriveLog, DrivenLog,
 from strainwave.identification.experiments.experiment import Experiment
 from strainwave.identification.experiments.friction_table import FrictionTable
 from strainwave.identification.experiments.torsion_loop import TorsionLoop
-from strainwave.identification.fitting.problem import LOSSES, FitRecord, LossName, Problem, Squared, Weights
+from strainwave.identification.fitting.loss_functions import LOSSES, LossName, Squared
+from strainwave.identification.fitting.problem import FitRecord, Problem, Weights
 from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, Prior, plan
 from strainwave.messages import in_a_sentence, listed, quoted, shortened
 from strainwave.presentation import Pictured, Presented, Row, counted

@@ -145,14 +145,14 @@ def _is_exact(path: str) -> bool:
 # ---- Series that a model lacks ---------------------------------------------------------------------------------------
 
 
-def change_with(found: Fit, series: Array) -> tuple[dict[str, float], Array]:
+def change_with(fit: Fit, series: Array) -> tuple[dict[str, float], Array]:
     """Return by how much the parameters of a fit change if shares of further series are fitted too, by path; and these shares.
 
     Args:
-        found: fit of one channel of one record
+        fit: of one channel of one record
         series: added to its prediction, shape (series, n)
     """
-    problem, x = solved_problem(found)
+    problem, x = solved_problem(fit)
     weights = problem.weights(x)
     weight = float(weights[0].rows.item())
     columns = np.hstack([problem.jacobian(x, weights), weight * series[:, problem.records[0].training].T])
@@ -160,7 +160,7 @@ def change_with(found: Fit, series: Array) -> tuple[dict[str, float], Array]:
     columns = np.vstack([columns, np.hstack([of_priors, np.zeros((len(of_priors), len(series)))])])
     left = np.concatenate([weight * problem.residuals(x)[0][0], right - of_priors @ x])
     change = solved(columns, left)
-    paths = [each.path for each in problem.plan.unknowns]
+    paths = [unknown.path for unknown in problem.plan.unknowns]
     return dict(zip(paths, change.tolist(), strict=False)), change[len(x) :]
 
 

@@ -4,30 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any, Literal, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from strainwave import Drive, Gear, _core
 from strainwave.identification.experiments.experiment import Experiment
-from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, ParameterLink, Unknown
+from strainwave.identification.fitting.descent import Descent
+from strainwave.identification.fitting.loss_functions import LOSSES, LossName, curvature, slope
+from strainwave.identification.fitting.unknowns import OF_RECORD, Estimate, FitParameters, ParameterLink
 from strainwave.statistics.covariance import posterior_of
-from strainwave.statistics.linear_fit import solved
 from strainwave.statistics.residuals import correlation_length
-from strainwave.statistics.scale import robust_sigma
 
 Array = NDArray[np.float64]
 FIRST_NOISE = 0.01  # of the size of a channel, in the first pass (assumed)
 MIN_NOISE = 1e-12  # of the size of a channel: no measurement has less noise
-MIN_RELATIVE_GAIN = 1e-3  # of the tolerance, by which a step must make the cost smaller; one with less is the last
-MIN_SHIFT_SIGMA = 0.01  # standard deviations that the cost must gain in a step; one with less is the last
 MIN_DISTANCE_SIGMA = 0.1  # standard deviations from a limit, the other unknowns held: a fit that ends nearer ended there
 MAX_TRIALS = 60  # steps that a fit may try; those that explain their data end after ten to forty
 MAX_RETURNS = 3  # of unknowns without influence to their initial values, each with further steps
-LossName = Literal["linear", "soft_l1"]
-AMPLITUDE_NAMES = ("amplitude", "torque")  # in a name in place of "phase"
 
 
 @dataclass(frozen=True)
@@ -129,14 +124,6 @@ class FitRecord:
                 "measurement are right, and the numbers of the gear to start from"
             )
         return predicted, slopes
-
-
-class _SettledError(Exception):
-    """A fit has come to its end, at these unknowns."""
-
-    def __init__(self, part: Array) -> None:
-        super().__init__("the fit has come to its end")
-        self.part = part
 
 
 class Problem:
@@ -258,107 +245,11 @@ class Problem:
         if len(free) == 0:
             return whole
         for _ in range(1 + MAX_RETURNS):
-            x, returned = self._ended(self._descended(whole, free, weights, tolerance, trials), whole, held, weights)
+            x, returned = self._ended(Descent(self, whole, free, weights, tolerance, trials).ended(), whole, held, weights)
             if not np.any(self._influence(x, weights)[returned]):
                 break
             whole = x.copy()
         return x
-
-    def _descended(
-        self, whole: Array, free: NDArray[np.intp], weights: Sequence[Weights], tolerance: float, trials: int
-    ) -> Array:
-        """Return the unknowns after the steps of a fit from `whole`, which move those in the places `free`.
-
-        A step from far off is too long, and may take an unknown to where it has no influence and no step moves it again. Such
-        steps are shortened at first, and allowed in the end: the least cost may be there.
-        """
-        from scipy.optimize import least_squares
-
-        loss = self.loss
-        of_priors, right = self.prior_rows()
-        lengths = np.concatenate(
-            [
-                np.repeat(each.correlation_length, record.training.sum())
-                for each, record in zip(weights, self.records, strict=True)
-            ]
-        )
-
-        waves = Waves.of(self.plan.unknowns, whole, free)
-        begun, (lowest, highest) = waves.parts(whole), waves.limits(self.limits())[free].T
-
-        def with_free(part: Array) -> Array:
-            parts = begun.copy()
-            parts[free] = part
-            return waves.unknowns(parts)
-
-        squared = isinstance(loss, Squared)
-        samples, priors = len(lengths), len(right)
-        out_of_domain = np.full(samples + priors, np.inf)  # SciPy takes a quarter of such a step
-        influential = np.zeros(len(free), bool)  # where the last step ended
-        keeps_influence, shortened = True, False
-
-        @lru_cache(1)  # solvers ask for residuals and derivatives of a point one after the other
-        def linearised(part: bytes) -> Array:
-            """Return derivatives and residuals as columns."""
-            x = with_free(np.frombuffer(part))
-            of_data = [-each.rows * residual for each, residual in zip(weights, self.residuals(x), strict=True)]
-            left = np.concatenate([*map(np.ravel, of_data), of_priors @ x - right])
-            slopes = waves.slopes(np.concatenate((self.jacobian(x, weights), of_priors)), x)[:, free]
-            return np.column_stack((slopes, left))
-
-        def residuals(part: Array) -> Array:
-            nonlocal shortened
-            try:
-                columns = linearised(part.tobytes())
-            except (ValueError, FloatingPointError):  # out of the domain, or diverged
-                return out_of_domain
-            if keeps_influence and np.any(influential & ~np.any(columns[:, :-1], axis=0)):
-                shortened = True
-                return out_of_domain
-            return columns[:, -1]
-
-        def jacobian(part: Array) -> Array:
-            """Return the derivatives where a step ended; SciPy would go on until rounding, or a kink, made its steps fail."""
-            columns = linearised(part.tobytes())
-            rows, left = columns[:, :-1], columns[:, -1]
-            influential[:] = np.any(rows, axis=0)
-            if squared:
-                step = solved(rows, -left)  # of Gauss and Newton
-                gain = float(np.sum((rows @ step) ** 2))  # decrease of the sum of squares if residuals were linear
-                if gain <= MIN_RELATIVE_GAIN * tolerance * float(left @ left):
-                    raise _SettledError(np.clip(part + step, lowest, highest))
-            return rows
-
-        def cost(squares: Array) -> Array:
-            """Return the cost of samples in units of their noise, times their independent share, and of priors the square."""
-            of_data, of_prior = squares[:samples], squares[samples:]
-            value, first, second = loss.cost(of_data * lengths)
-            return np.concatenate((np.stack((value / lengths, first, second * lengths)), Squared().cost(of_prior)), axis=1)
-
-        def stepped(part: Array) -> Array:
-            try:
-                solution = least_squares(
-                    residuals,
-                    part,
-                    jac=jacobian,
-                    bounds=(lowest, highest),
-                    x_scale="jac",
-                    loss="linear" if squared else cost,  # type: ignore[arg-type]  # stubs ask for more
-                    xtol=tolerance,
-                    ftol=max(tolerance, MIN_SHIFT_SIGMA**2 / samples),
-                    gtol=tolerance,
-                    max_nfev=trials,
-                )
-            except _SettledError as settled:
-                return settled.part
-            return np.asarray(solution.x)
-
-        with np.errstate(over="ignore"):  # SciPy takes a smaller step where its model of the residuals is infinite
-            part = stepped(begun[free])
-            if shortened:
-                keeps_influence = False
-                part = stepped(part)
-        return with_free(part)
 
     def _influence(self, x: Array, weights: Sequence[Weights]) -> Array:
         """Return the norm of the weighted derivatives by each unknown, shape (unknowns,)."""
@@ -442,116 +333,3 @@ class Problem:
             for (path, unit, before, end), value, s, f in zip(described, values, sigma, freedom[order], strict=True)
         )
         return estimates, covariance
-
-
-# ---- Loss functions --------------------------------------------------------------------------------------------------
-
-
-class Loss(Protocol):
-    """Cost of residuals, in units of their standard deviation; a fit minimises half of `cost(residual**2)`."""
-
-    def sigma(self, residual: Array) -> Array:
-        """Return the standard deviation of the noise, shape (channels, 1), from residuals, shape (channels, n)."""
-        ...
-
-    def cost(self, squares: Array) -> Array:
-        """Return the cost over the square of a residual, and its first and second derivative, shape (3, n)."""
-        ...
-
-
-class Squared:
-    """The square itself: best where noise is normal."""
-
-    def sigma(self, residual: Array) -> Array:
-        return np.asarray(np.sqrt(np.mean(residual**2, axis=1, keepdims=True)))
-
-    def cost(self, squares: Array) -> Array:
-        return np.stack((squares, np.ones_like(squares), np.zeros_like(squares)))
-
-
-class SoftL1:
-    """Like the square for residuals within their standard deviation, like the absolute value far beyond: outliers pull little.
-
-    Cost 2 (sqrt(1 + z) - 1): Charbonnier et al., IEEE Trans. Image Process. 6 (1997) 298-311. The standard deviation is that of
-    normal noise with the same median absolute value, which outliers hardly change (Hampel 1974).
-    """
-
-    def sigma(self, residual: Array) -> Array:
-        return robust_sigma(residual, axis=1)[:, np.newaxis]
-
-    def cost(self, squares: Array) -> Array:
-        root = np.sqrt(1.0 + squares)
-        return np.stack((2.0 * (root - 1.0), 1.0 / root, -0.5 / root**3))
-
-
-LOSSES: dict[LossName, Loss] = {"linear": Squared(), "soft_l1": SoftL1()}
-
-
-def slope(loss: Loss, residual: Array) -> Array:
-    """Return the derivative of half the cost by the residual."""
-    return np.asarray(residual * loss.cost(residual**2)[1])
-
-
-def curvature(loss: Loss, residual: Array) -> Array:
-    """Return the second derivative of half the cost by the residual."""
-    _, first, second = loss.cost(residual**2)
-    return np.asarray(first + 2.0 * residual**2 * second)
-
-
-# ---- Waves, as a solver moves them -----------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True, eq=False)
-class Waves:
-    """The waves among the unknowns of a fit.
-
-    Attributes:
-        amplitude, phase: places of the unknowns of each wave, shape (waves,)
-        turned: phase at the start of the fit, from which the imaginary part counts [rad], shape (waves,)
-    """
-
-    amplitude: NDArray[np.intp]
-    phase: NDArray[np.intp]
-    turned: Array
-
-    @classmethod
-    def of(cls, unknowns: Sequence[Unknown], start: Array, free: NDArray[np.intp]) -> Waves:
-        """Return the waves whose amplitude and phase are both free and not limited but for the sign of the amplitude."""
-        places = {unknowns[place].path: place for place in free.tolist() if place < len(unknowns)}
-        pairs = [
-            (places[path], phase)
-            for name, phase in places.items() if "phase" in name
-            for path in (name.replace("phase", amplitude) for amplitude in AMPLITUDE_NAMES) if path in places
-        ]  # fmt: skip
-        pairs = [
-            (own, phase) for own, phase in pairs
-            if start[own] > 0.0 and np.isinf([unknowns[phase].low, unknowns[phase].high, unknowns[own].high]).all()
-        ]  # fmt: skip
-        amplitude, phase = np.array(pairs, np.intp).reshape(-1, 2).T
-        return cls(amplitude, phase, start[phase])
-
-    def parts(self, x: Array) -> Array:
-        """Return unknowns with real and imaginary part in the places of amplitude and phase."""
-        parts, wave = x.copy(), x[self.amplitude] * np.exp(1j * (x[self.phase] - self.turned))
-        parts[self.amplitude], parts[self.phase] = wave.real, wave.imag
-        return parts
-
-    def unknowns(self, parts: Array) -> Array:
-        """Return the unknowns of parts; a phase is within half a turn of that at the start."""
-        unknowns, wave = parts.copy(), parts[self.amplitude] + 1j * parts[self.phase]
-        unknowns[self.amplitude], unknowns[self.phase] = np.abs(wave), self.turned + np.angle(wave)
-        return unknowns
-
-    def slopes(self, rows: Array, x: Array) -> Array:
-        """Return derivatives by the parts, of those by the unknowns at x, shape (samples, unknowns)."""
-        slopes, angle = rows.copy(), x[self.phase] - self.turned
-        along, across = rows[:, self.amplitude], rows[:, self.phase] / np.maximum(x[self.amplitude], 1e-300)
-        slopes[:, self.amplitude] = along * np.cos(angle) - across * np.sin(angle)
-        slopes[:, self.phase] = along * np.sin(angle) + across * np.cos(angle)
-        return slopes
-
-    def limits(self, ends: Array) -> Array:
-        """Return lowest and highest values of the parts, of those of the unknowns, shape (unknowns, 2)."""
-        limits = ends.copy()
-        limits[self.amplitude], limits[self.phase] = (-np.inf, np.inf), (-np.inf, np.inf)
-        return limits

@@ -21,12 +21,13 @@ from strainwave.identification.kinds.at_rest import (
     with_breakaway,
 )
 from strainwave.identification.reading.mapping import FileMapping
-from strainwave.identification.reading.motion import MAX_SPEED_AT_REST, jumps, runs_of
+from strainwave.identification.reading.motion import MAX_SPEED_AT_REST, jumps
 from strainwave.identification.reading.recognise import Recognised
 from strainwave.identification.reading.roles import Column, first
 from strainwave.identification.results.file_result import BREAKAWAY_PATH, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
 from strainwave.statistics.residuals import rms
+from strainwave.statistics.runs import runs_of
 from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]

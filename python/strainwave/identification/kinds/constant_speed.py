@@ -380,7 +380,7 @@ def joined(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Together:
     if not parts:
         raise ValueError("nothing moves at a constant speed: all stretches are at rest")
     levels = _levels(parts)
-    speed, remarks = _signed(np.array([each.speed for each in parts]), levels.torque)
+    speed, remarks = _signed(np.array([part.speed for part in parts]), levels.torque)
     gravity = tuple(_gravity(levels, known.gear_set.gear.kinematics.ratio if side == "input" else 1.0))
     if gravity:
         remarks = (*remarks, "gravity is one wave over the angle of the joint, which counts from one zero in all files")
@@ -418,7 +418,7 @@ def _signed(speed: Array, torque: Array) -> tuple[Array, tuple[str, ...]]:
 
 
 def _levels(parts: Sequence[Stretch]) -> Levels:
-    return levels_of([each.torque for each in parts], [each.angle for each in parts], np.array([each.speed for each in parts]))
+    return levels_of([part.torque for part in parts], [part.angle for part in parts], np.array([part.speed for part in parts]))
 
 
 def _gravity(levels: Levels, ratio: float) -> Iterator[FileEstimate]:
@@ -443,8 +443,8 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     turning = [run for run in runs if run.turning]
     if not turning:
         return (), known
-    recordings = [each for run in turning for each in run.turning]
-    moving = [each for run in runs for each in run.stretches if each.speed != 0.0]
+    recordings = [recording for run in turning for recording in run.turning]
+    moving = [stretch for run in runs for stretch in run.stretches if stretch.speed != 0.0]
     has_gravity = _levels(moving).gravity_sigma is not None
     position_fit = fit_position(recordings, 1.0 / abs(known.gear_set.gear.kinematics.ratio) if has_gravity else None)
     names = [run.file.path.name for run in turning]
@@ -454,7 +454,7 @@ def over_the_angle(runs: Sequence[ConstantSpeedRun], known: GearSoFar) -> Togeth
     estimates = only_if_explained(_estimates(position_fit, max(run.uncertain for run in turning), measured=measured), whole)
     law: Any = known.gear_set.gear.friction_input
     remarks = list(_of_position(position_fit, len(recordings)))
-    if len({each.speed > 0.0 for each in moving}) == 1:
+    if len({stretch.speed > 0.0 for stretch in moving}) == 1:
         remarks.append("it has one direction only: gravity over the angle is part of this friction; record both directions")
     sliding = law.law if law.name == "thermal" else law
     waves = _waves(position_fit)

@@ -114,7 +114,7 @@ class Torsion(Kind):
         if side is None:
             of_side.append(_why_output(angle, torque))
         counted = f"{torque.name} is a torque of the motor, counted at the output: the friction of the input is in the loop"
-        remarks: tuple[str, ...] = (counted,) if "motor" in torque.name.casefold() else ()
+        remarks: tuple[str, ...] = (counted,) if _is_of_motor(torque.name) else ()
         if side == "output" and (stiffness := _series_stiffness(angle.si, torque.si)):
             torque = replace(torque, si=float(np.copysign(1.0, stiffness)) * torque.si)
             remarks += (_computed(angle, torque, stiffness),)
@@ -147,10 +147,8 @@ class Torsion(Kind):
         varies = float(np.std(best.fit.experiment.measured))
         shaped = judged_shape(left, {OVER_LOOP: np.arange(float(len(left)))}, varies, "N.m", name, ordered=True)
         gain_sigma, by_models, by_shape = _gain_sigma(loop, gear), spread_by_models(best, others), spread_by_shape(best)
-        spread = {
-            each.path: float(np.linalg.norm([by_models[each.path], by_shape[each.path], _by_gain(each, gain_sigma)]))
-            for each in best.fit.estimates
-        }
+        by_gain = {estimate.path: _by_gain(estimate, gain_sigma) for estimate in best.fit.estimates}
+        spread = {path: float(np.linalg.norm([by_models[path], by_shape[path], gain])) for path, gain in by_gain.items()}
         fitted = JudgedFit(best.fit, name, influence(best.fit), not whole.failed, shared, spread=spread)
         fit, estimates = fitted.with_set_before(known)
         result = FileResult(
@@ -189,10 +187,8 @@ class Torsion(Kind):
         """Split the loss of all loops by its source."""
         gear, loops = known.gear_set.gear, list[Recording]()
         for file in files:
-            recording = file.at_ratio(gear.kinematics.ratio).recording
             with suppress(ValueError):  # a branch, or a loop of several amplitudes
-                LossLoop.of(recording, gear)
-                loops.append(recording)
+                loops.append(lossy_loop(file, gear))
         if len(loops) < MIN_LOOPS_OF_SOURCES:
             return (), known
         try:
@@ -208,6 +204,25 @@ class Torsion(Kind):
             Ranked(each.name, each.parameters, each.error, each.standard_error, "N.m", each.correlation, 1e6 * each.cost)
             for each in ranking
         )
+
+
+def lossy_loop(file: Recognised, gear: Gear) -> Recording:
+    """Return the loop of a file for `loss_shares`: at the input if its torque is the motor's, although counted at the output.
+
+    Raises:
+        ValueError: as `LossLoop.of`
+    """
+    ratio, recording = gear.kinematics.ratio, file.at_ratio(gear.kinematics.ratio).recording
+    if "twist" in recording and _is_of_motor(file.columns["torque"]):
+        at_input = recording.with_column("input_angle", ratio * recording.values("twist", "rad"), "rad")
+        at_input = at_input.with_column("input_torque", recording.values("torque", "N.m") / ratio, "N.m")
+        recording = at_input.select([name for name in at_input.names if name not in ("twist", "torque")])
+    LossLoop.of(recording, gear)
+    return recording
+
+
+def _is_of_motor(name: str) -> bool:
+    return "motor" in name.casefold()
 
 
 def is_loaded_spring(columns: Sequence[Column], mapping: FileMapping) -> bool:

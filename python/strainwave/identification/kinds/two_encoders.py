@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 OVER_TEMPERATURE = "kinematic error over the temperature"
 RATIO_OPTION = "--constant ratio=NUMBER"
+TEMPERATURE_UNITS = {"temperature": "K", "amplitude": "rad", "modelled": "rad"}
+MAX_DRAWN_ORDERS = 2  # over the temperature
 TURN_BINS = 72  # parts of a turn of the input: order 8 has nine of them
 
 
@@ -48,7 +50,9 @@ class TwoEncoders(Kind):
     def roles(self, columns: Sequence[Column], mapping: FileMapping) -> ColumnRoles:
         angles = measured(columns, "angle")
         if len(angles) != 2:
-            raise QuestionError(f"a record of two encoders needs two angles; it has {names_of(columns)}")
+            more = "; leave the others out, with --column unused=PLACE, by the place in the file"
+            there = f"it has {names_of(columns)}{more if len(angles) > 2 else ''}"
+            raise QuestionError(f"a record of two encoders needs two angles; {there}")
         fast, slow, why_side = sides_of_angles(angles)
         why = f"its columns are {pair(*angles)}, and no torque or current: {self.title}"
         by_channel = {**first(columns, "time"), "input_angle": fast, "output_angle": slow, **first(columns, "temperature")}
@@ -80,7 +84,8 @@ class TwoEncoders(Kind):
         determined_by = {file for path, file in known.determined_by.items() if is_of(path, {"kinematic_error"})}
         is_own = bool(found.orders) and determined_by <= set(names)
         after = with_error_over_temperature(known, found, names) if is_own else known
-        return (result_over_temperature(found, names),), after
+        pictures = tuple(_pictures_over_temperature(found, [errors for *_, errors in measured_at]))
+        return (replace(result_over_temperature(found, names), pictures=pictures),), after
 
 
 def with_error(known: GearSoFar, found: TransmissionError, name: str) -> GearSoFar:
@@ -128,7 +133,21 @@ def result_over_temperature(found: ErrorOverTemperature, names: Sequence[str]) -
         )
         for each in found.orders
     )
-    return FileResult(OVER_TEMPERATURE, file, "straight lines", estimates, found.remarks, what=OVER_TEMPERATURE)
+    what = "orders of records at several temperatures"
+    return FileResult(OVER_TEMPERATURE, file, "straight lines", estimates, found.remarks, what=what)
+
+
+def _pictures_over_temperature(found: ErrorOverTemperature, errors: Sequence[TransmissionError]) -> Iterator[Picture]:
+    """Yield the amplitude of the strongest orders that change over the temperature, with their lines."""
+    temperature = np.array(found.temperatures)
+    changing = sorted((each for each in found.orders if each.significant), key=lambda each: -each.amplitude)
+    for order in changing[:MAX_DRAWN_ORDERS]:
+        amplitude = [next((each.amplitude for each in error.orders if each.order == order.order), np.nan) for error in errors]
+        line = order.amplitude + order.amplitude_rate * (temperature - found.reference_temperature)
+        columns = {"temperature": temperature, "amplitude": np.array(amplitude), "modelled": line}
+        rows = np.isfinite(columns["amplitude"])
+        curves = Recording({name: values[rows] for name, values in columns.items()}, TEMPERATURE_UNITS)
+        yield Picture(curves, "records", f"amplitude of order {order.order:g}", f"order {order.order:g}")
 
 
 def _at_its_temperature(file: Recognised, found: TransmissionError) -> Iterator[FileEstimate]:

@@ -159,7 +159,7 @@ def _one_effort(columns: Sequence[Column]) -> tuple[list[Column], dict[str, str]
 def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
     """Return the columns that a person named."""
     columns = []
-    wanted = [(name, each) for name, each in mapping.columns.items() if name not in (*LISTED_CHANNELS, UNUSED)]
+    wanted = [(name, column) for name, column in mapping.columns.items() if name not in (*LISTED_CHANNELS, UNUSED)]
     wanted += [
         (name, each.strip()) for name in LISTED_CHANNELS for each in mapping.columns.get(name, "").split(",") if each.strip()
     ]
@@ -181,7 +181,7 @@ def _by_user(table: OpenTable, mapping: FileMapping) -> list[Column]:
 
 def _unused_places(table: OpenTable, mapping: FileMapping) -> set[int]:
     """Return the positions of the columns that a person does not want to be used."""
-    names = [each.strip() for each in mapping.columns.get(UNUSED, "").split(",")]
+    names = [name.strip() for name in mapping.columns.get(UNUSED, "").split(",")]
     return {_place_of(table, UNUSED, name, mapping.joint) for name in names if name}
 
 

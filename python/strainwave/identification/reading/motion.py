@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.statistics.runs import runs_of
+
 Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
@@ -214,9 +216,3 @@ def turns_steadily(angle: Array, speed: Array) -> bool:
     parts = stretches(speed)
     ways = [abs(float(angle[part.stop - 1] - angle[part.start])) for part in parts]
     return fills_record(parts, len(speed)) and bool(min(ways) > 2.0 * np.pi)
-
-
-def runs_of(wanted: NDArray[np.bool_], min_rows: int) -> list[slice]:
-    """Return the stretches of rows that are wanted, those of at least so many rows."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], wanted, [False]]).astype(int)))
-    return [slice(int(a), int(b)) for a, b in edges.reshape(-1, 2) if b - a >= min_rows]

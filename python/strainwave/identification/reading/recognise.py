@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -202,7 +202,7 @@ def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
         units={name: column.unit or "1" for name, column in roles.columns.items()},
         side=roles.side,
         why=(*roles.why, *by_file_name),
-        remarks=(*remarks, *of_efforts, *of_values, *roles.remarks, *of_wraps, *of_time, *_of_unused(unused.values())),
+        remarks=(*remarks, *of_efforts, *of_values, *roles.remarks, *of_wraps, *of_time, *_of_unused(table, unused)),
         constants=dict(mapping.constants),
         recording=Recording(series, {name: used[name].si_unit if name in used else "s" for name in series}, table.title),
         neighbours={column.which: name for name, column in neighbours.items()},
@@ -219,7 +219,7 @@ def _as_stated(source: MeasurementFile, stated: FileMapping) -> Recognised:
         left_out=(
             *table.left_out,
             *(remark for remark in of_numbers if remark.startswith(UNUSED_NUMBERS)),
-            *_of_unused(unused.values()),
+            *_of_unused(table, unused),
         ),
         parts=tuple(part.path for part in parts),
         ratio=ratio,
@@ -233,7 +233,7 @@ def _roles_or_question(table: OpenTable, columns: Sequence[Column], mapping: Fil
     except QuestionError as question:
         if question.answers:
             raise
-        left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(_unused(table, columns).values())))
+        left = "".join(f"; {remark}" for remark in (*table.left_out, *_of_unused(table, _unused(table, columns))))
         if unnamed.is_frequency_response(table):
             why = "it is a frequency response, which is not read: give the record in time from which it was computed"
             raise QuestionError(f"{why}{left}") from None
@@ -268,7 +268,10 @@ def _unused(table: OpenTable, columns: Sequence[Column]) -> dict[int, str]:
     return {place: one_line(label.text) for place, label in enumerate(table.labels) if place not in used and label.name}
 
 
-def _of_unused(names: Collection[str]) -> list[str]:
+def _of_unused(table: OpenTable, unused: Mapping[int, str]) -> list[str]:
+    """Return a remark on columns that are not used; a unit promises numbers, so that a text in such a column is named."""
+    texts = {place for place in unused if table.contents[place] == "other" and table.labels[place].unit}
+    names = [f"{name} (contains text)" if place in texts else name for place, name in unused.items()]
     return [f"columns not used: {listed(names)}"] if names else []
 
 

@@ -199,7 +199,7 @@ def _are_one_run(one: Recording, other: Recording) -> bool:
 
 def _may_be_one_error(one: Recording, other: Recording, time: Array) -> bool:
     """True if the output is off the motion of the input by the same: a repeated motion has another error, and other noise."""
-    if not all(set(ENCODERS) <= set(each.names) for each in (one, other)):
+    if not all(set(ENCODERS) <= set(recording.names) for recording in (one, other)):
         return True
     errors = []
     for recording in (one, other):

@@ -334,6 +334,8 @@ def _longest_stretch(stamps: Array) -> tuple[Rows, list[str]]:
 def _step(stamps: Array) -> float:
     """Return the usual time from row to row [s]."""
     steps = np.diff(stamps)
+    if not len(steps):
+        raise ValueError("it has one row; a recording needs more")
     if not (forward := steps[steps > 0.0]).size:
         raise QuestionError("its time does not run forward", [LOG_AT_RATE])
     return float(np.median(forward))

@@ -83,7 +83,8 @@ def name_of_files(files: Sequence[FileResult]) -> str:
     stem = one_line(Path(first.name).stem)
     joint = first.recognised.joint if first.recognised is not None else ""
     of = f"joint {joint} of {stem}" if joint and joint not in stem else stem
-    return f"gear of {of}" + (f" and {len(files) - 1} more" if len(files) > 1 else "")
+    others = sum(not each.what for each in files) - 1  # without results of several files together
+    return f"gear of {of}" + (f" and {others} more" if others > 0 else "")
 
 
 def _note(start: GearSet, files: Sequence[FileResult], logs: Sequence[FileResult], best: FileResult | None) -> str:

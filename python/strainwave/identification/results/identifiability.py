@@ -33,6 +33,9 @@ MAX_KEPT_LISTED = 3  # kept parameters named with an estimate
 MAX_CORRELATION = 0.98  # of two estimates; with a larger one, those that are uncertain are identified in combination
 BY_SET = "determined together with numbers that are not identified, between which the set before the file divides"
 DIVIDED_LAWS = friction.Coulomb | friction.Stribeck | friction.LuGre  # laws with Coulomb and viscous friction
+SLOPES_AT_KNEE = {"gear.stiffness.t1": ("k1", "k2"), "gear.stiffness.t2": ("k2", "k3")}
+BETWEEN_KNEES = "gear.stiffness.k2"
+MIN_SLOPE_SIGMAS = 2.0  # standard deviations by which the slopes of a spring differ at a knee
 MIN_RELATIVE_SIGMA = 1e-3  # of a torque: friction is repeated no better
 MAX_SHIFT_SIGMA = 1.0  # standard deviations: an estimate that its prior moves farther is determined in combination only
 
@@ -62,7 +65,7 @@ class JudgedFit:
 
     def with_set_before(self, known: GearSoFar) -> tuple[Fit, tuple[FileEstimate, ...]]:
         """Return the fit and its estimates, with the set before the file as the prior of what the file does not determine."""
-        estimates = tuple(self.estimates(known.gear_set.sources, known.determined_by))
+        estimates = without_bare_knees(self.estimates(known.gear_set.sources, known.determined_by))
         return with_set_before(self.fit, estimates, known, self.prefix) if self.explained else (self.fit, estimates)
 
     def estimates(self, sources: Mapping[str, Entry], determined: Collection[str]) -> Iterator[FileEstimate]:
@@ -136,6 +139,45 @@ class JudgedFit:
         return (
             f"{self.source} disagrees with the kept {path}: fitting that too would change this by {100.0 * shifts[path]:+.2g} %"
         )
+
+
+def without_bare_knees(estimates: Iterable[FileEstimate]) -> tuple[FileEstimate, ...]:
+    """Return estimates in which a knee of a spring is identified only between two slopes that are, and that differ.
+
+    The slope between two knees is identified only if these are apart.
+    """
+    judged = tuple(_apart(estimates))
+    slopes = {each.path: each for each in judged}
+    return tuple(
+        replace(each, why=each.why or _bare([slopes.get(f"gear.stiffness.{name}") for name in SLOPES_AT_KNEE[each.path]]))
+        if each.path in SLOPES_AT_KNEE
+        else each
+        for each in judged
+    )
+
+
+def _apart(estimates: Iterable[FileEstimate]) -> Iterator[FileEstimate]:
+    """Yield estimates, the slope between two knees of a spring not identified if their distance is not significant."""
+    judged = {each.path: each for each in estimates}
+    first, second = (judged.get(path) for path in SLOPES_AT_KNEE)
+    for path, each in judged.items():
+        if path == BETWEEN_KNEES and first is not None and second is not None and not each.why:
+            far = second.value - first.value > MIN_SLOPE_SIGMAS * float(np.hypot(first.sigma, second.sigma))
+            yield each if far else replace(each, why="the knees beside this slope are not significantly apart")
+        else:
+            yield each
+
+
+def _bare(slopes: Sequence[FileEstimate | None]) -> str:
+    """Return why a knee between two slopes is not identified; empty if they are identified and differ."""
+    below, above = slopes
+    if below is None or above is None:
+        return ""
+    if "not identified" in (below.state, above.state):
+        return "a slope beside this knee is not identified"
+    if abs(above.value - below.value) < MIN_SLOPE_SIGMAS * float(np.hypot(below.sigma, above.sigma)):
+        return "the slopes beside this knee do not differ significantly"
+    return ""
 
 
 def _law(path: str, gear: Any) -> str:

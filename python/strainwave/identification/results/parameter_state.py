@@ -126,7 +126,7 @@ def over_start_figure(states: Sequence[ParameterState], start: GearSet, name: st
         axes.grid(visible=False, axis="y")
         axes.tick_params(axis="y", length=0.0)
         marks.label_abscissa(axes, f"value over that of {start.name}", "1")
-        marks.legend(figure, axes, below=True)
+        marks.legend(figure, axes)
     return figure
 
 

@@ -31,7 +31,8 @@ ANGLE_NAMES = {"small_angle": "angle of the input"}  # of loops, in words
 MAX_SEGMENT_SAMPLES = 4096  # samples, of which spectra are averaged
 MIN_SPECTRUM_SAMPLES = 32
 SPECTRUM_HEAD_HEIGHT, SPECTRUM_PANEL_HEIGHT = 1.0, 2.4  # inches
-Look = Literal["table", "loop", "series", "means", "turn"]
+Look = Literal["table", "loop", "series", "means", "records", "turn"]
+OVER_TEMPERATURE = {"means": ("means of classes", "line through all samples"), "records": ("records", "line")}  # by look
 Subject = Literal["torque", "friction", "twist", "error", ""]
 UNITS_OF_EFFORT = ("N.m", "A", "V")
 
@@ -115,7 +116,7 @@ def pictures_figure(pictures: Sequence[Picture], title: str) -> Figure:
     with marks.new_figure(FIGURE_HEIGHT * len(pictures), title) as figure:
         parts = np.atleast_1d(np.array(figure.subfigures(len(pictures), 1)))
         for part, picture in zip(parts, pictures, strict=True):
-            marks.legend(part, draw_picture(part, picture), below=True)
+            marks.legend(part, draw_picture(part, picture))
     return figure
 
 
@@ -169,11 +170,12 @@ def _loop(axes: Axes, picture: Picture) -> None:
 
 
 def _means(axes: Axes, picture: Picture) -> None:
-    """Draw means of the friction over the temperature, and the line through all samples."""
+    """Draw means of the friction, or numbers of records, over the temperature, and their line."""
+    points, line = OVER_TEMPERATURE[picture.look]
     over, channel = picture.curves.names[:2]
     celsius = picture.curves.values(over, "degC")
-    axes.plot(celsius, picture.curves[channel], "o", color=LIGHT["measured"], label="means of classes")
-    axes.plot(celsius, picture.curves["modelled"], color=LIGHT["model"], label="line through all samples")
+    axes.plot(celsius, picture.curves[channel], "o", color=LIGHT["measured"], label=points)
+    axes.plot(celsius, picture.curves["modelled"], color=LIGHT["model"], label=line)
     marks.label_axes(axes, picture_label(picture), picture.curves.unit(channel), "temperature", "degC")
 
 
@@ -209,7 +211,7 @@ def _turn(figure: Figure | SubFigure, picture: Picture) -> Axes:
 
 
 _MEASURED: dict[Look, Callable[[Axes, Picture], None]] = {
-    "table": _table, "loop": _loop, "means": _means, "series": _series,
+    "table": _table, "loop": _loop, "means": _means, "records": _means, "series": _series,
 }  # fmt: skip
 
 
@@ -227,8 +229,8 @@ def _draw_residual(axes: Axes, picture: Picture) -> None:
         x_label, x_unit = "input speed", "rad/s"
     elif look == "loop":
         x, x_label, x_unit = np.arange(1.0, len(curves) + 1.0), "point compared, in the order measured", "1"
-    elif look == "means":
-        x, sigma, label = curves.values(over, "degC"), None, "means − line"
+    elif look in OVER_TEMPERATURE:
+        x, sigma, label = curves.values(over, "degC"), None, f"{look} − line"
         x_label, x_unit = "temperature", "degC"
     elif "residual" in curves:
         label = "left by orders and loads"
@@ -301,5 +303,5 @@ def spectrum_figure(experiment: Experiment, residuals: Array, title: str) -> Fig
                 axis.loglog(frequency, amplitude, color=LIGHT[colour], linewidth=1.0, label=label)
             marks.label_axes(axis, f"amplitude of {channel.replace('_', ' ')}", unit)
         marks.label_abscissa(axes[-1], "frequency", "Hz")
-        marks.legend(figure, axes[0], below=True)
+        marks.legend(figure, axes[0])
     return figure

@@ -8,13 +8,15 @@ argument the phase, as of a sine.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import log, tau
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import degrees, log, tau
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from strainwave.equality import ComparedByFields
+from strainwave.files.mesh_table import MAX_LOADS, PLACE_UNITS, MeshTable
 from strainwave.messages import MAX_NAMES, in_a_sentence
 
 Array = NDArray[np.float64]
@@ -23,7 +25,6 @@ Complex = NDArray[np.complex128]
 MAX_ORDERS = 1024  # that are looked for, multiples of `repeats`
 EVEN_STEP = 1e-6  # relative difference of steps that are even
 MAX_LOAD_SPREAD = 1e-3  # of the largest torque, by which rows of one load differ, as a solver's tolerance makes them
-MAX_LOAD_COUNT = 1000
 ROWS_PER_BLOCK = 8192  # whose normal equations are summed at once
 MIN_ORDERS_OF_NOISE = 16  # of fewer a quarter is no sample of noise
 FLOOR_QUANTILE = 0.25  # of the squares of all amplitudes: noise makes it as long as three of four orders contain something
@@ -36,7 +37,7 @@ NO_NOISE = "the noise of the solver is not determined"
 
 
 @dataclass(frozen=True, eq=False)
-class Harmonics(ComparedByFields):
+class Harmonics:
     """Harmonics of one quantity of a table.
 
     Attributes:
@@ -66,112 +67,115 @@ class Harmonics(ComparedByFields):
         return np.asarray((squares > threshold).any(axis=0))
 
 
-def harmonics(angle: Array, torque: Array, values: Array, repeats: float) -> Harmonics:
-    """Return the harmonics of a quantity.
-
-    Args:
-        angle: of the wave generator [rad], shape (n,)
-        torque: [N.m], shape (n,)
-        values: in any unit, shape (n,)
-        repeats: number of times that it repeats in a turn
+def harmonics(table: MeshTable, quantity: str, repeats: float) -> Harmonics:
+    """Return the harmonics of a quantity that repeats so many times in a turn.
 
     Raises:
         ValueError: the angles of a load determine no order, or the torque is no few loads
     """
-    period = tau / repeats
-    rows_of_loads = _loads(torque)
-    gaps = [_largest_gap(angle[rows], period) for rows in rows_of_loads]
-    loads = np.array([torque[rows].mean() for rows in rows_of_loads])
-    worst = int(np.argmax(gaps))
-    count = min(int(np.ceil(0.5 * period / gaps[worst] * (1.0 - EVEN_STEP))) - 1, MAX_ORDERS)
-    if count < 1 or any(len(rows) > 1 and np.diff(np.unique(angle[rows])).max(initial=0.0) > np.pi for rows in rows_of_loads):
-        raise ValueError(_undetermined(angle[rows_of_loads[worst]], float(loads[worst]), gaps[worst], repeats))
-    orders = repeats * np.arange(1.0, count + 1.0)
-    fits = [_fit(angle[rows], values[rows], repeats, count) for rows in rows_of_loads]
-    mean, waves = np.array([fit[0] for fit in fits]), np.array([fit[1] for fit in fits])
+    loads, values = _loads(table, repeats), getattr(table, quantity)
+    worst = max(loads, key=lambda load: load.gap)
+    count = min(int(np.ceil(0.5 * tau / repeats / worst.gap * (1.0 - EVEN_STEP))) - 1, MAX_ORDERS)
+    if count < 1 or any(load.steps[1] > np.pi for load in loads):
+        raise ValueError(worst.undetermined(repeats))
+    fits = [_fit(table.angle[load.rows], values[load.rows], repeats, count) for load in loads]
+    mean, waves = np.array([mean for mean, _ in fits]), np.array([waves for _, waves in fits])
     noise, of_noise = _noise(waves)
-    remarks = *_of_gap(angle[rows_of_loads[worst]], gaps[worst], orders), *of_noise
-    return Harmonics(loads, orders, mean, waves, noise, remarks)
+    torque, orders = np.array([load.torque for load in loads]), repeats * np.arange(1.0, count + 1.0)
+    return Harmonics(torque, orders, mean, waves, noise, (*worst.remarks(orders), *of_noise))
 
 
-def check_repeats(angle: Array, torque: Array, values: Array, repeats: int) -> None:
+def check_repeats(table: MeshTable, quantity: str, repeats: int) -> None:
     """Raise ValueError if a table of several periods has orders that contradict the number of times that all repeats."""
-    period = tau / repeats
-    span = float(np.ptp(angle)) + float(np.diff(np.unique(angle)).max(initial=0.0))
+    period, angle = tau / repeats, np.unique(table.angle)
+    span = float(np.ptp(angle) + np.diff(angle).max(initial=0.0))
     periods = min(int(span / period * (1.0 + EVEN_STEP)), repeats)
     if periods < 2:
         return
-    rows = angle < angle.min() + periods * period * (1.0 - EVEN_STEP)
-    found = harmonics(angle[rows], torque[rows], values[rows], repeats / periods)
-    amplitude = np.abs(found.waves).max(axis=0)
-    others = found.significant(FALSE_REFUSAL) & (amplitude > MAX_OTHER_ORDER * amplitude.max())
+    whole = _rows_of(table, table.angle < angle[0] + periods * period * (1.0 - EVEN_STEP))
+    of_all = harmonics(whole, quantity, repeats / periods)
+    amplitude = np.abs(of_all.waves).max(axis=0)
+    others = of_all.significant(FALSE_REFUSAL) & (amplitude > MAX_OTHER_ORDER * amplitude.max())
     others[periods - 1 :: periods] = False
     if others.any():
-        names, sizes = (in_a_sentence([f"{each:.4g}" for each in of[others][:MAX_NAMES]]) for of in (found.orders, amplitude))
+        names, sizes = (
+            in_a_sentence([f"{x:.4g}" for x in values[others][:MAX_NAMES]]) for values in (of_all.orders, amplitude)
+        )
         raise ValueError(f"order {names} has an amplitude of {sizes} and is no multiple of repeats={repeats}; give repeats=1")
 
 
-def complete_loads(angle: Array, torque: Array, repeats: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
-    """Return the rows of loads without a hole that other loads do not have, shape (n,), and remarks on loads left out."""
-    rows_of_loads, kept, remarks = _loads(torque), np.ones(len(angle), bool), []
-    gaps = [_largest_gap(angle[rows], tau / repeats) for rows in rows_of_loads]
-    for rows, gap in zip(rows_of_loads, gaps, strict=True):
-        usual = max(float(np.median(np.diff(np.unique(angle[rows])))) if len(rows) > 1 else 0.0, min(gaps))
-        if gap > UNEVEN_GAP * usual:
-            kept[rows] = False
-            hole = f"angles are missing over {np.degrees(gap):.3g} deg"
-            remarks.append(f"at {torque[rows].mean():g} N.m {hole}: this load is left out; compute its missing rows")
-    return kept, tuple(remarks)
+def complete_loads(table: MeshTable, repeats: int) -> tuple[MeshTable, tuple[str, ...]]:
+    """Return a table without loads that have a hole which other loads do not have, and remarks on those."""
+    loads = _loads(table, repeats)
+    least = min(load.gap for load in loads)
+    kept, remarks = np.ones(len(table.angle), bool), []
+    for load in loads:
+        if load.gap > UNEVEN_GAP * max(load.steps[0], least):
+            kept[load.rows] = False
+            hole = f"angles are missing over {degrees(load.gap):.3g} deg"
+            remarks.append(f"at {load.torque:g} N.m {hole}: this load is left out; compute its missing rows")
+    return _rows_of(table, kept) if remarks else table, tuple(remarks)
 
 
-def _loads(torque: Array) -> list[NDArray[np.int_]]:
-    """Return the rows of each load, loads increasing."""
-    order = np.argsort(torque, kind="stable")
-    tolerance = MAX_LOAD_SPREAD * float(np.abs(torque).max())
-    groups = np.split(order, np.flatnonzero(np.diff(torque[order]) > tolerance) + 1)
-    if len(groups) > MAX_LOAD_COUNT or any(float(np.ptp(torque[rows])) > 2.0 * tolerance for rows in groups):
+def _rows_of(table: MeshTable, rows: NDArray[np.bool_]) -> MeshTable:
+    return replace(table, **{name: getattr(table, name)[rows] for name in (*PLACE_UNITS, *table.quantities)})
+
+
+class _Load(NamedTuple):
+    """Rows of a load, its torque [N.m], its angles, increasing, and the largest gap between them in a period [rad]."""
+
+    rows: NDArray[np.int_]
+    torque: float
+    angle: Array
+    gap: float
+
+    @property
+    def steps(self) -> tuple[float, float]:
+        """The usual and the largest distance of its angles [rad]; 0 of one angle."""
+        steps = np.diff(self.angle)
+        return (float(np.median(steps)), float(steps.max())) if len(steps) else (0.0, 0.0)
+
+    def undetermined(self, repeats: float) -> str:
+        """Return the message of angles that determine no order."""
+        (usual, widest), span, period = self.steps, float(np.ptp(self.angle)), tau / repeats
+        first, last = np.degrees(self.angle[[0, -1]])
+        where = f"at {self.torque:g} N.m the angles go from {first:.4g} to {last:.4g} deg"
+        if widest > np.pi:
+            far = "angles that are more than half a turn apart are no table: check their unit"
+            return f"{where}, {widest:.4g} rad apart; {far}"
+        if self.gap > 2.0 * usual > 0.0 and span < period:
+            share = round(tau / (span + usual))
+            of_part = f"; give repeats={share} if all repeats {share} times in a turn (two lobes alike: 2)"
+            whole = f"{where}, less than the {degrees(period):.4g} deg in which it repeats: no order is determined"
+            return f"{whole}{of_part if share > repeats else ''}, or compute more"
+        needed = f"order {repeats:g} needs less than {180.0 / repeats:g} deg"
+        return f"{where}, {degrees(self.gap):.4g} deg apart: {needed}; check the unit of the angle, or compute more"
+
+    def remarks(self, orders: Array) -> Iterator[str]:
+        """Yield remarks on the angles, and on the orders that they determine."""
+        usual, span = self.steps[0], float(np.ptp(self.angle))
+        if span > tau + usual:
+            alone = "and whole orders alone are looked for: check the unit of the angle"
+            yield f"the angles span {span / tau:.3g} turns, {alone}"
+        if self.gap > UNEVEN_GAP * usual:
+            yield f"the largest gap between angles is {degrees(self.gap):.3g} deg, the usual one {degrees(usual):.3g} deg"
+        why = f"the first {MAX_ORDERS} are looked for" if len(orders) == MAX_ORDERS else "half the samples of a turn"
+        yield f"orders up to {orders[-1]:g} are determined ({why}); a higher one would appear as a lower one"
+
+
+def _loads(table: MeshTable, repeats: float) -> list[_Load]:
+    """Return the loads, increasing."""
+    order, period = np.argsort(table.torque, kind="stable"), tau / repeats
+    tolerance = MAX_LOAD_SPREAD * float(np.abs(table.torque).max())
+    groups = np.split(order, np.flatnonzero(np.diff(table.torque[order]) > tolerance) + 1)
+    if len(groups) > MAX_LOADS or any(float(np.ptp(table.torque[rows])) > 2.0 * tolerance for rows in groups):
         raise ValueError("the torque varies from row to row; give rows at a few loads, each at all angles")
-    return groups
-
-
-def _largest_gap(angle: Array, period: float) -> float:
-    """Return the largest distance of neighbouring angles in a period [rad]."""
-    within = np.unique(np.mod(angle, period))
-    return float(np.diff(np.append(within, within[0] + period)).max())
-
-
-def _undetermined(angle: Array, torque: float, gap: float, repeats: float) -> str:
-    """Return the message of angles that determine no order."""
-    span, period = float(np.ptp(angle)), tau / repeats
-    where = f"at {torque:g} N.m the angles go from {np.degrees(angle.min()):.4g} to {np.degrees(angle.max()):.4g} deg"
-    steps = np.diff(np.unique(angle))
-    if len(steps) and steps.max() > np.pi:
-        return (
-            f"{where}, {steps.max():.4g} rad apart; angles that are more than half a turn apart are no table: check their unit"
-        )
-    if len(steps) and gap > 2.0 * float(np.median(steps)) and span < period:
-        share = round(tau / (span + float(np.median(steps))))
-        of_part = (
-            f"; give repeats={share} if all repeats {share} times in a turn (two lobes alike: 2)" if share > repeats else ""
-        )
-        whole = f"{np.degrees(period):.4g} deg in which it repeats"
-        return f"{where}, less than the {whole}: no order is determined{of_part}, or compute more"
-    needed = f"order {repeats:g} needs less than {180.0 / repeats:g} deg"
-    return f"{where}, {np.degrees(gap):.4g} deg apart: {needed}; check the unit of the angle, or compute more"
-
-
-def _of_gap(angle: Array, gap: float, orders: Array) -> list[str]:
-    usual = float(np.median(np.diff(np.unique(angle)))) if len(angle) > 1 else gap
-    remarks = []
-    if float(np.ptp(angle)) > tau + usual:
-        turns = float(np.ptp(angle)) / tau
-        remarks.append(f"the angles span {turns:.3g} turns, and whole orders alone are looked for: check the unit of the angle")
-    if gap > UNEVEN_GAP * usual:
-        remarks.append(
-            f"the largest gap between angles is {np.degrees(gap):.3g} deg, the usual one {np.degrees(usual):.3g} deg"
-        )
-    why = f"the first {len(orders)} are looked for" if len(orders) == MAX_ORDERS else "half the samples of a turn"
-    return [*remarks, f"orders up to {orders[-1]:g} are determined ({why}); a higher one would appear as a lower one"]
+    loads = []
+    for rows in groups:
+        within = np.unique(np.mod(table.angle[rows], period))
+        gap = float(np.diff(np.append(within, within[0] + period)).max())
+        loads.append(_Load(rows, float(table.torque[rows].mean()), np.unique(table.angle[rows]), gap))
+    return loads
 
 
 def _fit(angle: Array, values: Array, repeats: float, count: int) -> tuple[float, Complex]:

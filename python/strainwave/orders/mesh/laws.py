@@ -16,15 +16,9 @@ from strainwave.files.gear_set import GearSet, gear_set_of
 from strainwave.files.mesh_table import QUANTITY_UNITS, MeshTable, ModeTable
 from strainwave.messages import listed, shortened
 from strainwave.orders.mesh.application import applied
-from strainwave.orders.mesh.error import (
-    ErrorFit,
-    StiffnessVariation,
-    error_fit,
-    spring_by_tangents,
-    transmission_error,
-    twists_of,
-)
+from strainwave.orders.mesh.error import ErrorFit, error_fit, of_waves, strongest, variation_of_column
 from strainwave.orders.mesh.harmonics import MAX_LOAD_SPREAD, Harmonics, check_repeats, complete_loads, harmonics
+from strainwave.orders.mesh.spring import NAMED_DISAGREEMENT, spring_by_tangents, transmission_error
 from strainwave.presentation import Pictured, Row, counted
 
 if TYPE_CHECKING:
@@ -35,7 +29,6 @@ Complex = NDArray[np.complex128]
 
 MAX_ERROR_ORDERS = 16  # capacity of kinematic_error.Fourier
 MAX_REPEATS = 100_000
-NAMED_DISAGREEMENT = 0.02  # relative, from which a difference is stated
 NAMED_MISFIT = 0.25  # of the amplitude of an order, by which its change with the load is missed
 
 
@@ -115,9 +108,9 @@ class MeshLaws(ComparedByFields, Pictured):
         return f"{of_error}; {self.source}"
 
     def _rows(self) -> Iterator[Row]:
-        for each in self.orders:
-            note = f"phase {typeset.number(float(np.degrees(each.phase)), 4)}°, {typeset.percent(each.share)} of the squares"
-            yield Row(f"order {each.order:g}", each.amplitude, "rad", each.sigma or nan, note)
+        for order in self.orders:
+            note = f"phase {typeset.number(float(np.degrees(order.phase)), 4)}°, {typeset.percent(order.share)} of the squares"
+            yield Row(f"order {order.order:g}", order.amplitude, "rad", order.sigma or nan, note)
         if isinstance(self.kinematic_error, kinematic_error.Scaled):
             yield Row("load sensitivity", self.kinematic_error.load_sensitivity, "1/(N.m)", self.sensitivity_sigma or nan)
         if self.stiffness is not None:
@@ -138,7 +131,7 @@ class MeshLaws(ComparedByFields, Pictured):
 
         if not self.orders:
             raise ValueError("the table determines no order of the error; there is nothing to draw")
-        order, amplitude = (np.array([getattr(each, name) for each in self.orders]) for name in ("order", "amplitude"))
+        order, amplitude = (np.array([getattr(line, name) for line in self.orders]) for name in ("order", "amplitude"))
         return stems_figure(
             "Kinematic error without load", Series("order", "1", order), Series("amplitude at the output", "rad", amplitude)
         )
@@ -164,54 +157,39 @@ def mesh_laws(table: MeshTable, *, load: float | None = None, repeats: int = 1, 
 
     >>> import numpy as np
     >>> import strainwave as sw
-    >>> angle, torque = (each.ravel() for each in np.meshgrid(np.radians(np.arange(0.0, 360.0, 5.0)), [-30.0, 0.0, 30.0]))
+    >>> angle, torque = (grid.ravel() for grid in np.meshgrid(np.radians(np.arange(0.0, 360.0, 5.0)), [-30.0, 0.0, 30.0]))
     >>> error = (3e-4 * np.sin(2 * angle + 0.5) + 4e-5 * np.sin(4 * angle)) / (1 + 0.02 * abs(torque)) ** 2
     >>> table = sw.files.MeshTable(angle, torque, transmission_error=error + torque / 20e3)
-    >>> found = sw.orders.mesh_laws(table)
-    >>> found.kinematic_error.law.order, round(found.kinematic_error.load_sensitivity, 3), round(found.stiffness.k, -2)
+    >>> laws = sw.orders.mesh_laws(table)
+    >>> laws.kinematic_error.law.order, round(laws.kinematic_error.load_sensitivity, 3), round(laws.stiffness.k, -2)
     ((2.0, 4.0), 0.02, 20000.0)
     """
     if not isinstance(table, MeshTable):
         raise TypeError(f"table must be a MeshTable, as sw.files.MeshTable.read(...) gives one, not {shortened(table)}")
     repeats = arguments.whole("repeats", repeats, 1, MAX_REPEATS)
     allowed = arguments.probability("false_alarm", false_alarm)
-    table, incomplete = _complete(table, repeats)
-    quantity = next(getattr(table, name) for name in QUANTITY_UNITS if name in table.quantities)
-    check_repeats(table.angle, table.torque, quantity, repeats)
-    error, of_spring, of_mesh = (
-        None if (values := getattr(table, name)) is None else harmonics(table.angle, table.torque, values, repeats)
-        for name in ("transmission_error", "stiffness", "mesh_stiffness")
-    )
-    first = next(each for each in (error, of_spring, of_mesh) if each is not None)
-    loads = slice(None) if load is None else _chosen(first.torque, load)
-    given, of_teeth = (
-        None if found is None else StiffnessVariation.of_column(name, found, allowed)
-        for name, found in (("stiffness", of_spring), ("mesh_stiffness", of_mesh))
-    )
+    table, incomplete = complete_loads(table, repeats)
+    names = [name for name in QUANTITY_UNITS if name in table.quantities]
+    check_repeats(table, names[0], repeats)
+    columns = {name: harmonics(table, name, repeats) for name in names}
+    error, column, of_mesh = (columns.get(name) for name in QUANTITY_UNITS)
+    loads = slice(None) if load is None else _chosen(columns[names[0]].torque, load)
+    given, of_teeth = (variation_of_column(name, columns.get(name), allowed) for name in ("stiffness", "mesh_stiffness"))
+    over_loads = []
+    if of_mesh is not None and np.ptp(of_mesh.mean) > NAMED_DISAGREEMENT * of_mesh.mean.min():
+        low, high = (typeset.quantity(float(end), "N/m") for end in (of_mesh.mean.min(), of_mesh.mean.max()))
+        over_loads = [f"over the loads the mesh stiffness is {low} to {high}: the mean is in the model"]
     laws = MeshLaws(
-        stiffness_variation=None if given is None else given.law,
+        stiffness=None if column is None else spring_by_tangents(column),
+        stiffness_variation=given[0],
         mesh_stiffness=None if of_mesh is None else float(of_mesh.mean.mean()),
-        mesh_variation=None if of_teeth is None else of_teeth.law,
+        mesh_variation=of_teeth[0],
         source=table.source,
-        remarks=(
-            *incomplete,
-            *first.remarks,
-            *(remark for each in (given, of_teeth) if each is not None for remark in each.remarks),
-            *_over_loads(of_mesh),
-        ),
+        remarks=(*incomplete, *columns[names[0]].remarks, *given[1], *of_teeth[1], *over_loads),
     )
     if error is None:
-        return laws if of_spring is None else replace(laws, stiffness=spring_by_tangents(of_spring).law)
-    fit = error_fit(error, of_spring, given, loads, allowed)
-    return _with_error(laws, table, error, loads, fit, tuple(_remarks(fit, error, of_spring)))
-
-
-def _complete(table: MeshTable, repeats: int) -> tuple[MeshTable, tuple[str, ...]]:
-    """Return a table without loads of which angles are missing, and remarks on them."""
-    rows, remarks = complete_loads(table.angle, table.torque, repeats)
-    if rows.all():
-        return table, ()
-    return replace(table, **{name: getattr(table, name)[rows] for name in ("angle", "torque", *table.quantities)}), remarks
+        return laws
+    return _with_error(laws, table, error, loads, error_fit(error, column, given[0], loads, allowed))
 
 
 def _chosen(torque: Array, load: float) -> slice:
@@ -219,136 +197,46 @@ def _chosen(torque: Array, load: float) -> slice:
     wanted = arguments.number("load", load, "N.m")
     place = int(np.argmin(np.abs(torque - wanted)))
     if abs(torque[place] - wanted) > MAX_LOAD_SPREAD * float(np.abs(torque).max()):
-        raise ValueError(f"load is {wanted:g} N.m; the table has {listed(f'{each:g}' for each in torque.tolist())} N.m")
+        raise ValueError(f"load is {wanted:g} N.m; the table has {listed(f'{other:g}' for other in torque.tolist())} N.m")
     return slice(place, place + 1)
 
 
-# ---- Laws and remarks ------------------------------------------------------------------------------------------------
-
-
-def _with_error(
-    laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice, fit: ErrorFit, remarks: tuple[str, ...]
-) -> MeshLaws:
+def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice, fit: ErrorFit) -> MeshLaws:
     """Return the laws with those of the transmission error."""
-    orders, left_out = _orders(error, loads, fit)
-    ordered = sorted(orders, key=lambda each: each.order)
-    law: Any = kinematic_error.Fourier(
-        order=[each.order for each in ordered],
-        amplitude=[each.amplitude for each in ordered],
-        phase=[each.phase for each in ordered],
-    )
+    (chosen, rest), sensitivity = strongest(fit.error, MAX_ERROR_ORDERS), fit.orders.sensitivity
+    law: Any = kinematic_error.Fourier(**of_waves(error.orders, fit.error, chosen))
+    of_error, factor = np.asarray(law.error(table.angle)), fit.factor(table.angle)
     load = np.searchsorted(0.5 * (error.torque[1:] + error.torque[:-1]), table.torque)
+    measured = np.asarray(table.transmission_error)
+    left = measured - transmission_error(fit.spring, of_error, sensitivity, factor, table.torque)
+    left -= (np.bincount(load, left) / np.bincount(load))[load]
     rows = np.isin(load, np.arange(len(error.torque))[loads])
-    varying = np.asarray(table.transmission_error) - error.mean[load]
-    left = varying - _predicted(table, law, fit)
-    left = left - (np.bincount(load, left) / np.bincount(load))[load]
-    squares, rest = float(np.mean(varying[rows] ** 2)), float(np.mean(left[rows] ** 2))
+    squares, unexplained = (float(np.mean(of[rows] ** 2)) for of in (measured - error.mean[load], left))
+    power = np.mean(np.abs(error.waves[loads]) ** 2, axis=0)
+    columns = error.orders, np.abs(fit.error), fit.orders.sigma, np.angle(fit.error), power / power.sum()
     return replace(
         laws,
-        kinematic_error=law
-        if fit.orders.sensitivity == 0.0
-        else kinematic_error.Scaled(law=law, load_sensitivity=fit.orders.sensitivity),
-        stiffness=None if fit.spring is None else fit.spring.law,
-        stiffness_variation=fit.variation.law,
-        orders=orders,
-        sensitivity_sigma=fit.orders.sensitivity_sigma,
-        residual=float(np.sqrt(rest)),
-        explained_share=1.0 - rest / squares if squares > 0.0 else 0.0,
-        remarks=(*laws.remarks, *remarks, *left_out),
+        kinematic_error=kinematic_error.Scaled(law=law, load_sensitivity=sensitivity) if sensitivity else law,
+        stiffness=fit.spring,
+        stiffness_variation=fit.variation,
+        orders=tuple(MeshOrder(*row) for row in np.transpose(columns)[chosen].tolist()),
+        sensitivity_sigma=fit.orders.sigmas[0],
+        residual=float(np.sqrt(unexplained)),
+        explained_share=1.0 - unexplained / squares if squares > 0.0 else 0.0,
+        remarks=(*laws.remarks, *fit.remarks, *fit.orders.remarks, *_of_orders(error, np.abs(fit.error), fit, rest)),
     )
 
 
-def _orders(error: Harmonics, loads: slice, fit: ErrorFit) -> tuple[tuple[MeshOrder, ...], list[str]]:
-    """Return the orders of the error, the strongest first, and what is left out."""
-    power = np.mean(np.abs(error.waves[loads]) ** 2, axis=0)
-    present = np.flatnonzero(fit.orders.error)
-    strongest = present[np.argsort(-np.abs(fit.orders.error[present]), kind="stable")]
-    orders = tuple(
-        MeshOrder(
-            float(error.orders[each]),
-            float(abs(fit.orders.error[each])),
-            float(fit.orders.sigma[each]),
-            float(np.angle(fit.orders.error[each])),
-            float(power[each] / power.sum()),
-        )
-        for each in strongest[:MAX_ERROR_ORDERS].tolist()
-    )
-    rest = np.sort(strongest[MAX_ERROR_ORDERS:])
-    if not len(rest):
-        return orders, []
-    size = typeset.quantity(float(np.abs(fit.orders.error[rest]).max()), "rad")
-    return orders, [f"a law has {MAX_ERROR_ORDERS} orders; {counted(len(rest), 'order')} of up to {size} left out"]
-
-
-def _predicted(table: MeshTable, law: Any, fit: ErrorFit) -> Array:
-    """Return the transmission error of the laws [rad], shape (n,)."""
-    error = np.asarray(law.error(table.angle))
-    if fit.spring is None:
-        return np.asarray(error / (1.0 + fit.orders.sensitivity * np.abs(table.torque)) ** 2)
-    factor = np.ones(len(error)) if fit.variation.law is None else np.asarray(fit.variation.law.factor(table.angle))
-    return transmission_error(fit.spring.law, error, fit.orders.sensitivity, factor, table.torque)
-
-
-def _over_loads(of_mesh: Harmonics | None) -> Iterator[str]:
-    """Yield a remark on a stiffness of the mesh that the model has at its mean over the loads."""
-    if of_mesh is None:
-        return
-    low, high = float(of_mesh.mean.min()), float(of_mesh.mean.max())
-    if high - low > NAMED_DISAGREEMENT * low:
-        ends = f"{typeset.quantity(low, 'N/m')} to {typeset.quantity(high, 'N/m')}"
-        yield f"over the loads the mesh stiffness is {ends}: the mean is in the model"
-
-
-def _remarks(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> Iterator[str]:
-    """Yield all remarks on the fit of the transmission error."""
-    yield from _of_spring(fit, error)
-    yield from _of_slope(fit, error, of_spring)
-    yield from fit.orders.remarks
-    yield from _of_orders(error, fit)
-    yield from _of_noise(error, fit)
-
-
-def _of_spring(fit: ErrorFit, error: Harmonics) -> Iterator[str]:
-    """Yield remarks on the spring."""
-    loads = len(error.torque)
-    if fit.spring is None and loads == 1:
-        yield "one load does not determine the stiffness"
-    elif not fit.wound and loads > 1:
-        whose = "not determined" if fit.spring is None else "that of its column"
-        yield f"the mean transmission error does not change with the load: the twist is not in it, and the stiffness is {whose}"
-    elif fit.wound and loads == 2:
-        yield "two loads determine a straight spring alone: whether it bends is not tested"
-    if fit.wound and fit.spring is not None:
-        share = fit.spring.residual / float(np.ptp(fit.spring.law.twist(error.torque)))
-        if share > NAMED_DISAGREEMENT:
-            yield f"the spring leaves {typeset.percent(share)} of the twist unexplained, as if the two senses differed"
-
-
-def _of_slope(fit: ErrorFit, error: Harmonics, of_spring: Harmonics | None) -> Iterator[str]:
-    """Yield a remark if the column stiffness and the slope of the transmission error differ."""
-    if of_spring is None or not fit.wound:
-        return
-    twist, by_column = np.diff(error.mean), twists_of(of_spring)
-    worst = int(np.argmax(np.abs(twist / by_column - 1.0)))
-    if abs(twist[worst] / by_column[worst] - 1.0) > NAMED_DISAGREEMENT:
-        low, high = error.torque[worst : worst + 2].tolist()
-        by_error, by_table = ((high - low) / each[worst] for each in (twist, by_column))
-        where, of_column = f"from {low:g} to {high:g} N.m", f"the column stiffness {by_table:.4g} N.m/rad"
-        yield f"{where} the transmission error gives {by_error:.4g} N.m/rad, {of_column}: the former is in the model"
-
-
-def _of_orders(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
-    """Yield a remark on orders that change with the load in another way than all together."""
-    missed = error.orders[(np.abs(fit.orders.error) > 0.0) & (fit.orders.misfit > NAMED_MISFIT * np.abs(fit.orders.error))]
-    if len(missed):
-        names = listed(f"{order:g}" for order in missed.tolist())
-        missing = f"it misses that of order {names} by a quarter of the amplitude or more"
+def _of_orders(error: Harmonics, amplitude: Array, fit: ErrorFit, rest: NDArray[np.int_]) -> Iterator[str]:
+    """Yield remarks on orders that change with the load by other laws, that noise hides, or that a law has no room for."""
+    missed = error.orders[(amplitude > 0.0) & (fit.orders.misfit > NAMED_MISFIT * amplitude)].tolist()
+    if missed:
+        missing = f"it misses that of order {listed(f'{order:g}' for order in missed)} by a quarter of the amplitude or more"
         yield f"the fall is one number for all orders; {missing}: for a spectrum at one load choose it by load="
-
-
-def _of_noise(error: Harmonics, fit: ErrorFit) -> Iterator[str]:
-    """Yield a remark on orders that the noise of the solver hides."""
-    left = len(error.orders) - int(np.count_nonzero(fit.orders.error))
-    if left and error.noise > 0.0:
-        hidden = f"{counted(left, 'order')} of {len(error.orders)} are within the noise of the solver"
-        yield f"{hidden}, {typeset.quantity(error.noise, 'rad')} of amplitude at a load, and left out"
+    if (hidden := int(np.sum(amplitude == 0.0))) and error.noise > 0.0:
+        size = typeset.quantity(error.noise, "rad")
+        within = f"{counted(hidden, 'order')} of {len(error.orders)} are within the noise of the solver"
+        yield f"{within}, {size} of amplitude at a load, and left out"
+    if len(rest):
+        size = typeset.quantity(float(amplitude[rest].max()), "rad")
+        yield f"a law has {MAX_ERROR_ORDERS} orders; {counted(len(rest), 'order')} of up to {size} left out"

@@ -16,6 +16,7 @@ from strainwave.rig.analysis.lines import Segments, fit_line, fit_segments
 from strainwave.rig.analysis.regimes import Regime, RegimeName
 from strainwave.rig.analysis.result import Result, inverse, result, student
 from strainwave.rig.loop import Loop
+from strainwave.statistics.runs import runs_of
 
 Array = NDArray[np.float64]
 
@@ -353,9 +354,8 @@ def _spots(stiffness: Stiffness, multiple: float) -> Iterator[SoftSpot]:
 
 def _bands(soft: NDArray[np.bool_], local: LocalStiffness) -> list[tuple[int, int]]:
     """Return the first stretch of each band and the one after its last; bands closer than the slopes resolve are merged."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], soft, [False])).astype(int))).tolist()
     bands: list[tuple[int, int]] = []
-    for first, beyond in zip(edges[::2], edges[1::2], strict=True):
+    for first, beyond in ((run.start, run.stop) for run in runs_of(soft)):
         if bands and local.torque[first] - local.torque[bands[-1][1] - 1] < local.width[first]:
             bands[-1] = (bands[-1][0], beyond)
         else:

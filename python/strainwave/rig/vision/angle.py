@@ -111,15 +111,15 @@ def _sources(images: Source | Iterable[Source | NDArray[Any]]) -> Iterator[Sourc
     elif isinstance(images, np.ndarray) and (images.ndim < 3 or images.shape[2:] == (3,)):
         raise ValueError(f"images is one array of shape {images.shape}; give a list of pictures, as [first, second]")
     else:
-        for number, each in enumerate(images, 1):
-            if isinstance(each, np.ndarray):
+        for number, picture in enumerate(images, 1):
+            if isinstance(picture, np.ndarray):
                 if number > MAX_FRAMES:
                     raise ValueError(f"images has more than {MAX_FRAMES} pictures; cut out what shows the test")
-                yield as_image(f"picture {number}", each)
+                yield as_image(f"picture {number}", picture)
                 continue
-            if not isinstance(each, str | Path | Image):
-                raise TypeError(f"images must be files or pictures, not {shortened(each)}")
-            yield each
+            if not isinstance(picture, str | Path | Image):
+                raise TypeError(f"images must be files or pictures, not {shortened(picture)}")
+            yield picture
 
 
 @dataclass(frozen=True, eq=False)

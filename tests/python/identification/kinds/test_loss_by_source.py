@@ -9,6 +9,8 @@ import pytest
 import strainwave as sw
 from strainwave.identification import loss_shares
 from strainwave.identification.experiments.loss_loop import LossLoop
+from strainwave.identification.kinds.torsion_loop import lossy_loop
+from strainwave.identification.reading.recognise import recognise
 
 from tests.evidence.drawn import relaxing_material
 from tests.evidence.drawn.loss_sources import SOURCES, outcome, split
@@ -56,6 +58,20 @@ def test_one_side_alone_determines_the_sum_of_bearing_and_gear_and_names_the_loo
 def test_loops_at_the_output_show_no_bearing() -> None:
     result = loss_shares([loop(reach, at_input=False) for reach in (20.0, 40.0)], GEAR)
     assert [each.name for each in result.shares] == ["gear, dry", "mesh, in proportion to the load", "flexspline, material"]
+
+
+def test_a_torque_of_the_motor_counted_at_the_output_is_a_loop_at_the_input(tmp_path: Path) -> None:
+    measured = loop(40.0, at_input=True)
+    rows = np.column_stack([measured["input_angle"] / RATIO, measured["input_torque"] * RATIO])
+    np.savetxt(
+        tmp_path / "loop.csv", rows, delimiter=",", header="deflection [rad],motor_torque_output_side [N.m]", comments=""
+    )
+    found = lossy_loop(recognise(tmp_path / "loop.csv"), GEAR)
+    assert found.names == measured.names
+    for name in measured.names:
+        assert found[name] == pytest.approx(measured[name], rel=1e-12)
+    (tmp_path / "loop.csv").write_text((tmp_path / "loop.csv").read_text().replace("motor_torque_output_side", "torque"))
+    assert lossy_loop(recognise(tmp_path / "loop.csv"), GEAR).names == ("twist", "torque")
 
 
 RELAXING = "flexspline, relaxing material"

@@ -87,6 +87,11 @@ def test_files_at_several_temperatures_determine_how_the_error_changes(tmp_path:
     assert law.reference_temperature == pytest.approx(303.15)
     angle = np.linspace(0.0, 6.0, 100)
     assert law.replace(temperature=323.15).error(angle) == pytest.approx(3.6e-4 * np.sin(2.0 * angle + 0.3), abs=4e-6)
+    (picture,) = found.files[-1].pictures
+    assert picture.label == "amplitude of order 2"
+    assert picture.curves["temperature"] == pytest.approx([283.15, 303.15, 323.15])
+    assert picture.curves["modelled"] == pytest.approx(picture.curves["amplitude"], rel=0.01)
+    assert found.gear_set.name.endswith("and 2 more")
     path = tmp_path / "gear.toml"
     found.accepted.save(path)
     assert GearSet.read(path).gear.kinematic_error == law

@@ -363,5 +363,7 @@ def test_columns_that_a_person_does_not_want_are_not_used(tmp_path: Path) -> Non
     read = recognise(path, FileMapping(columns={"unused": "temperature, load_torque"}))
     assert set(read.recording.names) == {"speed", "torque"}
     assert "columns not used: temperature [degC], load_torque [N.m]" in read.remarks
+    path.write_text(path.read_text().replace("10,0.05,20,0", "10,0.05,cold,0"))
+    assert "columns not used: temperature [degC] (contains text)" in recognise(path).remarks
     with pytest.raises(ValueError, match='has no column "nothing" to be the unused'):
         recognise(path, FileMapping(columns={"unused": "nothing"}))

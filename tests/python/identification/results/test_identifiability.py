@@ -18,7 +18,7 @@ from strainwave.identification.fitting.unknowns import Unknown
 from strainwave.identification.identify import Identified
 from strainwave.identification.results.file_result import FileEstimate, FileResult
 from strainwave.identification.results.gear_so_far import GearSoFar
-from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before
+from strainwave.identification.results.identifiability import JudgedFit, with_friction_at, with_set_before, without_bare_knees
 from strainwave.identification.results.steady_friction import friction_at, sizes_of
 from strainwave.parameters import every
 from strainwave.report.identify_files import identify_summary
@@ -35,6 +35,31 @@ def branch() -> sw.Recording:
     twist = np.linspace(0.0, 2e-3, 200)
     torque = SPRINGS["three_segment"].torque(twist) + 0.02 * np.random.default_rng(0).normal(size=200)
     return sw.Recording({"twist": twist, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+
+
+@pytest.mark.parametrize(
+    ("slope", "why", "reason"),
+    [
+        (30e3, "", ""),
+        (21e3, "", "do not differ significantly"),
+        (30e3, "disagrees with a kept number", "a slope beside this knee is not identified"),
+    ],
+)
+def test_a_knee_is_identified_between_slopes_that_are_and_that_differ(slope: float, why: str, reason: str) -> None:
+    names = {"k1": (20e3, 500.0, ""), "k2": (slope, 500.0, why), "t1": (10.0, 0.5, "")}
+    estimates = [FileEstimate(f"gear.stiffness.{name}", "", *numbers[:2], "", numbers[2]) for name, numbers in names.items()]
+    (*slopes, knee) = without_bare_knees(estimates)
+    assert slopes == estimates[:2]
+    assert reason in knee.why
+    assert bool(knee.why) is bool(reason)
+
+
+def test_a_slope_is_identified_between_knees_that_are_apart() -> None:
+    numbers = {"k1": (20e3, 500.0), "k2": (30e3, 500.0), "k3": (40e3, 500.0), "t1": (10.0, 0.5), "t2": (40.0, 1.0)}
+    for sigma, open_paths in ((0.5, []), (16.0, ["gear.stiffness.k2", "gear.stiffness.t1", "gear.stiffness.t2"])):
+        stated_numbers = numbers | {"t1": (10.0, sigma)}
+        estimates = [FileEstimate(f"gear.stiffness.{name}", "", *each, "") for name, each in stated_numbers.items()]
+        assert [each.path for each in without_bare_knees(estimates) if each.why] == open_paths
 
 
 def stated(found: Identified) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import strainwave as sw
 from hypothesis import given, settings, strategies as st
-from strainwave.identification.fitting.problem import Waves
+from strainwave.identification.fitting.descent import Waves
 from strainwave.identification.fitting.unknowns import Unknown
 
 UNKNOWNS = (
