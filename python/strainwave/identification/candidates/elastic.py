@@ -66,6 +66,7 @@ HELD_OUT_BLOCKS = 20  # of the data held out, over which the gain of a model sca
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
 MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more are an error of the model
 SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
+MIN_RELATIVE_BEND = 0.02  # change of the stiffness at a knee (assumed)
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
 DIFFERENCES_OF_ANGLE = 3  # of the angle, whose spectra of motion and noise are compared
@@ -363,7 +364,7 @@ def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
 
 
 def _with(log: DrivenLog, drive: Drive, scale: str, reach: float, nuisances: Array | None = None) -> _TriedModel | None:
-    """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
+    """Return the model fitted from a start; None if it leaves what its law allows, or if a knee of its spring shows nothing."""
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
         problem, x = _solved(log, drive, free, training, ROUGH_TOLERANCE, nuisances)
@@ -372,11 +373,19 @@ def _with(log: DrivenLog, drive: Drive, scale: str, reach: float, nuisances: Arr
         ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
         return None
-    if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
+    if not _bends_within(fitted.gear.stiffness, reach):
         return None
     count = len(fitted.gear.hysteresis.stiffness)
     name = f"{fitted.gear.stiffness.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
     return _TriedModel(name, free, fitted, x[problem.records[0].nuisances], (log.measured - predicted)[0, ~training])
+
+
+def _bends_within(spring: Any, reach: float) -> bool:
+    """True if a spring bends visibly at each of its knees within a torque [N.m]; a knee that does not bend has no place."""
+    if not isinstance(spring, stiffness.ThreeSegment):
+        return True
+    bends = [spring.k2 / spring.k1, *([spring.k3 / spring.k2] if spring.t2 < reach else [])]
+    return spring.t1 <= reach and all(abs(bend - 1.0) > MIN_RELATIVE_BEND for bend in bends)
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
