@@ -1,4 +1,4 @@
-from .candidates.torsion.losses import LossShare as LossShare, LossShares as LossShares, loss_shares as loss_shares
+from .candidates.torsion.losses.shares import LossShare as LossShare, LossShares as LossShares, loss_shares as loss_shares
 from .excitation.loops import plan_loops as plan_loops
 from .excitation.plan import ExperimentPlan as ExperimentPlan, plan_experiments as plan_experiments
 from .fitting.confidence import (

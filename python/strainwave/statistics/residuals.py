@@ -85,14 +85,19 @@ def whitened(series: Array, coefficients: Array) -> Array:
     return white
 
 
+def is_white(residual: Array) -> bool:
+    """True if an autoregression finds no memory in a residual, shape (n,)."""
+    return len(autoregression(residual - residual.mean())) == 1
+
+
 def correlation_length(residual: Array) -> float:
     """Return the integrated autocorrelation time in samples, over Sokal's window; 1 if an autoregression finds white noise.
 
     Sokal, "Monte Carlo methods in statistical mechanics" (1997), section 3.
     """
-    centred = residual - residual.mean()
-    if len(autoregression(centred)) == 1:
+    if is_white(residual):
         return 1.0
+    centred = residual - residual.mean()
     power = np.abs(np.fft.rfft(centred, 2 * len(centred))) ** 2
     if power.sum() == 0.0:
         return 1.0

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from strainwave import Gear, kinematics
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion.losses import LossShares, loss_shares
+from strainwave.identification.candidates.torsion.losses.shares import LossShares, loss_shares
 
 from tests.evidence.drawn.outcome import Outcome, compared
 

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from strainwave import Gear, kinematics
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion.losses import REVERSAL_SHARES, loss_shares
+from strainwave.identification.candidates.torsion.losses.fit import REVERSAL_SHARES
+from strainwave.identification.candidates.torsion.losses.shares import loss_shares
 from strainwave.identification.experiments.loss_loop import LossLoop
 
 from tests.evidence.drawn.loss_sources import ROOM_TEMPERATURE, SOURCES, Truth, drawn, measured

@@ -9,7 +9,7 @@ from tests.support.samples import sample
 
 
 @pytest.mark.slow("identification")
-@pytest.mark.parametrize("seed", [4, 10, 13, 17][: sample(2, 4)])
+@pytest.mark.parametrize("seed", [26, 5, 17, 3, 22, 8][: sample(2, 6)])
 def test_springs_and_elements_between_encoders_are_those_of_the_joint(seed: int) -> None:
     found = spring_and_loop.outcome(seed)
     assert found.verdict != "wrong", found.message

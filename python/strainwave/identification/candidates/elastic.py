@@ -13,6 +13,7 @@ elements has one answer. A stiffening spring and a slipping element can imitate 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -46,7 +47,7 @@ from strainwave.identification.fitting.fit import ROUGH_TOLERANCE, Fit, fit_of, 
 from strainwave.identification.fitting.problem import Problem
 from strainwave.identification.fitting.unknowns import Estimate, plan
 from strainwave.statistics.linear_fit import linear_fit, order_waves, solved
-from strainwave.statistics.residuals import correlation_length
+from strainwave.statistics.residuals import correlation_length, is_white
 from strainwave.statistics.scale import MIN_GAIN_SIGMA, sigmas_of_gain
 from strainwave.statistics.spectrum import mean_power
 
@@ -65,12 +66,15 @@ HELD_OUT_BLOCKS = 20  # of the data held out, over which the gain of a model sca
 MAX_CHANCE_ERROR = 1.1  # times the smallest held-out error: a larger one is never chance, as elements act at few reversals
 MAX_CORRELATION_OF_NOISE = 2.0  # samples: residuals that correlate over more are an error of the model
 SHARE_OF_LATER, LATER = 0.3, 2.5  # stiffness and slip of a further element over those of the one that is there (assumed)
+MIN_RELATIVE_BEND = 0.02  # change of the stiffness at a knee (assumed)
 MAX_STARTS = 4  # of the regressions that are simulated
 MIN_SIGNAL = 4.0  # times the spectral density of the noise: motion, not chance
 DIFFERENCES_OF_ANGLE = 3  # of the angle, whose spectra of motion and noise are compared
 CUTOFF_MARGIN = 1.5  # cut-off over the highest frequency of the motion
 PLACE_OF_SPEED = 2  # among the columns of the regression of the angle between the shafts
 DELAY = "output_angle_delay"
+LOAD_INERTIA, DAMPING_PATH = "load.inertia", "gear.damping"
+BEGINNING_SHARES = (0.15, 0.3, 0.6)  # of a record, over which its vibration is followed (assumed)
 SPRING, MEMORY = "gear.stiffness.", "gear.hysteresis."
 GRAVITY_PATH = "load.gravity_torque"
 FIRST_STIFFNESS = tuple(f"{SPRING}{name}" for name in ("k", "k1", "a1"))  # at zero twist, by the law
@@ -151,7 +155,8 @@ def _fitted(
     compared = _compared(_stretch(recording, log, drive, COMPARED_TIME), log, drive, delayed=delayed)
     best, rivals = _chosen(compared, starts, scale, reach)
     whole = _compared(_stretch(recording, log, drive, MAX_TIME), log, best.drive, delayed=delayed)
-    problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST)
+    nuisances = best.nuisances if len(whole.time) == len(compared.time) else None  # a longer log begins elsewhere
+    problem, x = _solved(whole, best.drive, best.free, None, MAX_RELATIVE_COST_AT_LAST, nuisances)
     whole_fit = fit_of(problem, x, problem.weights(x))
     sigmas = sigma_by_blocks(problem, x, whole_fit.estimates)
     apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in whole_fit.estimates])
@@ -191,15 +196,19 @@ def _reach(recording: Recording, log: MotionLog, drive: Drive, law: kinematic_er
 def _compared(recording: Recording, log: MotionLog, drive: Drive, *, delayed: bool) -> DrivenLog:
     """Return the output of a recording, late or not, in steps as short as the output of a drive vibrates.
 
-    It begins under the torque of the measured motion: any other one would make an output without damping vibrate for ever.
+    Torque and speed at its beginning are unknowns that start at those of the measured motion: an error of either makes a load
+    without damping vibrate for ever, for which a fit makes up by gravity, inertia and hysteresis that are not there. The
+    vibration has at most the torque that moves the rigid load.
     """
     gear: Any = drive.gear
-    stiff = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness)
-    step = min(MAX_STEP_OF_OUTPUT, MAX_PHASE_STEP * float(np.sqrt(inertia_of(drive) / stiff)))
-    torque = float(np.interp(recording.time[0], log.motion.time, transmitted_torque(log, drive)))
+    stiff, inertia = gear.stiffness.tangent(0.0) + sum(gear.hysteresis.stiffness), inertia_of(drive)
+    step = min(MAX_STEP_OF_OUTPUT, MAX_PHASE_STEP * float(np.sqrt(inertia / stiff)))
+    rigid = transmitted_torque(log, drive)
     output = motion_of(recording.time, recording.values("output_angle", "rad"), log.motion.cutoff)
-    initial = {"torque": torque, "output_speed": float(output.speed[0])}
+    initial = {"torque": float(np.interp(recording.time[0], log.motion.time, rigid)), "output_speed": float(output.speed[0])}
     compared = DrivenLog.of(recording, drive, ["output_angle"], step, initial, _cutoff_of_signal(recording))
+    largest = float(np.abs(rigid).max())
+    compared = compared.with_unknown_begin(largest, largest / float(np.sqrt(stiff * inertia)))
     return compared.with_delays("output_angle") if delayed else compared
 
 
@@ -241,11 +250,12 @@ def _stretch(recording: Recording, log: MotionLog, drive: Drive, length: float) 
 
 @dataclass(frozen=True, eq=False)
 class _TriedModel(ComparedByFields):
-    """A model fitted to a part of the log: its name, free paths, drive, and residuals on data held out [rad]."""
+    """A model fitted to a part of the log: its name, free paths, drive, nuisances, and residuals on data held out [rad]."""
 
     name: str
     free: tuple[str, ...]
     drive: Drive
+    nuisances: Array
     left: Array
 
     @cached_property
@@ -285,9 +295,11 @@ def _chosen(log: DrivenLog, starts: Sequence[ElasticStart], scale: str, reach: f
     if not tried:
         raise ValueError("no spring and hysteresis moves the output as it was measured")
     best = _simplest(log, tried, scale, reach)
-    if (drive := _with_later_element(best)) and (more := _with(log, drive, scale, reach)) and more.error < best.error:
-        tried.append(more)
-        best = _simplest(log, tried, scale, reach)
+    if drive := _with_later_element(best):
+        more = _with(log, drive, scale, reach, best.nuisances)
+        if more and more.error < best.error:
+            tried.append(more)
+            best = _simplest(log, tried, scale, reach)
     least = min(tried, key=lambda each: each.error)
     return best, [each for each in tried if each is not best and each.predicts_as_well_as(least)]
 
@@ -296,7 +308,8 @@ def _simplest(log: DrivenLog, tried: list[_TriedModel], scale: str, reach: float
     """Return the model with the fewest numbers of those that predict best; models with fewer are tried, and join the others."""
     best = min(tried, key=lambda each: each.error)
     while True:
-        simpler = [model for drive in _simpler(best.drive, reach) if (model := _with(log, drive, scale, reach)) is not None]
+        models = [_with(log, drive, scale, reach, best.nuisances) for drive in _simpler(best.drive, reach)]
+        simpler = [model for model in models if model is not None]
         tried += simpler
         least = min(tried, key=lambda each: each.error)
         good = [each for each in tried if each.predicts_as_well_as(least)]
@@ -350,20 +363,29 @@ def _apart(path: str, one: _TriedModel, other: _TriedModel) -> float:
     return abs(one.values[path] - there) if path in one.values and there is not None else 0.0
 
 
-def _with(log: DrivenLog, drive: Drive, scale: str, reach: float) -> _TriedModel | None:
-    """Return the model fitted from a start; None if it leaves what its law allows, or bends beyond the torque of the log."""
+def _with(log: DrivenLog, drive: Drive, scale: str, reach: float, nuisances: Array | None = None) -> _TriedModel | None:
+    """Return the model fitted from a start; None if it leaves what its law allows, or if a knee of its spring shows nothing."""
     free, training = tuple(_free(drive, scale, reach)), _training_blocks(log.time)
     try:
-        problem, x = _solved(log, drive, free, training, ROUGH_TOLERANCE)
+        problem, x = _solved(log, drive, free, training, ROUGH_TOLERANCE, nuisances)
         fitted: Any = problem.records[0].model(x)
+        fitted = fitted.replace(gear=fitted.gear.replace(hysteresis=maxwell(pairs(fitted.gear))))
         ((predicted, _),) = problem.predict(x)
     except (ValueError, FloatingPointError):
         return None
-    if getattr(fitted.gear.stiffness, "t1", 0.0) > reach:
+    if not _bends_within(fitted.gear.stiffness, reach):
         return None
     count = len(fitted.gear.hysteresis.stiffness)
     name = f"{fitted.gear.stiffness.name.replace('_', ' ')} spring, {count} Maxwell element{'s' if count > 1 else ''}"
-    return _TriedModel(name, free, fitted, (log.measured - predicted)[0, ~training])
+    return _TriedModel(name, free, fitted, x[problem.records[0].nuisances], (log.measured - predicted)[0, ~training])
+
+
+def _bends_within(spring: Any, reach: float) -> bool:
+    """True if a spring bends visibly at each of its knees within a torque [N.m]; a knee that does not bend has no place."""
+    if not isinstance(spring, stiffness.ThreeSegment):
+        return True
+    bends = [spring.k2 / spring.k1, *([spring.k3 / spring.k2] if spring.t2 < reach else [])]
+    return spring.t1 <= reach and all(abs(bend - 1.0) > MIN_RELATIVE_BEND for bend in bends)
 
 
 def _training_blocks(time: Array) -> NDArray[np.bool_]:
@@ -374,11 +396,48 @@ def _training_blocks(time: Array) -> NDArray[np.bool_]:
 
 
 def _solved(
-    log: DrivenLog, drive: Drive, free: Sequence[str], training: NDArray[np.bool_] | None, tolerance: float
+    log: DrivenLog,
+    drive: Drive,
+    free: Sequence[str],
+    training: NDArray[np.bool_] | None,
+    tolerance: float,
+    nuisances: Array | None,
 ) -> tuple[Problem, Array]:
-    """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it."""
+    """Return the least squares of a log of one channel, whose weight changes nothing, and the unknowns that solve it.
+
+    The nuisances are initial values: those of another model of the same log.
+
+    A natural frequency that gains or loses a period over the record is a minimum of its own, and regressions do not determine
+    it as well as that. While residuals are not white, the fit starts again from longer and longer beginnings of the record: by
+    inertia and damping, which make up for errors of the frequency; by all numbers, as that of a bent spring varies with the
+    amplitude.
+    """
     problem = problem_of(plan(drive, [""], free), drive, [log], [training])
-    return problem, problem.solve(problem.start(), problem.first_weights(), tolerance, trials=MAX_STEPS_OF_FIT)
+    weights, inertia = problem.first_weights(), next(path for path in (LOAD_INERTIA, *FIRST_STIFFNESS) if path in free)
+    begin = problem.start()
+    if nuisances is not None:
+        begin[problem.records[0].nuisances] = nuisances
+    x = problem.solve(begin, weights, tolerance, trials=MAX_STEPS_OF_FIT)
+    for tuned in ([inertia, DAMPING_PATH], free):
+        if is_white(problem.residuals(x)[0][0]):
+            break
+        with suppress(ValueError, FloatingPointError):  # a beginning of too few samples, or one that the model leaves
+            in_phase = _in_phase(problem, log, drive, begin, tuned)
+            other = problem.solve(in_phase, weights, tolerance, trials=MAX_STEPS_OF_FIT)
+            x = min(x, other, key=lambda unknowns: problem.cost(unknowns, weights))
+    return problem, x
+
+
+def _in_phase(problem: Problem, log: DrivenLog, drive: Drive, begin: Array, tuned: Sequence[str]) -> Array:
+    """Return initial unknowns with these numbers and the unknowns of the measurement fitted to beginnings of a record."""
+    whole, paths = begin.copy(), [unknown.path for unknown in problem.plan.unknowns]
+    known = plan(drive, [""], tuned)
+    first, last = log.time[[0, -1]].tolist()
+    places = [*(paths.index(unknown.path) for unknown in known.unknowns), *range(len(paths), len(whole))]
+    for share in BEGINNING_SHARES:
+        beginning = problem_of(known, drive, [log.beginning(first + share * (last - first))], [None])
+        whole[places] = beginning.solve(whole[places], beginning.first_weights(), ROUGH_TOLERANCE, trials=MAX_STEPS_OF_FIT)
+    return whole
 
 
 def _free(drive: Drive, scale: str, reach: float) -> Iterator[str]:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from strainwave import arguments
 from strainwave._core import Gear
 from strainwave.files.recording import Recording
-from strainwave.identification.candidates.torsion.losses import MAX_SHARE_SIGMA, FurtherLoops, further_loops
-from strainwave.identification.excitation.candidates import score
+from strainwave.identification.candidates.torsion.losses.fit import MAX_SHARE_SIGMA, LossFit, fit_losses
+from strainwave.identification.candidates.torsion.losses.next_loops import options, with_bearing, with_rows
+from strainwave.identification.candidates.torsion.losses.shares import LossShares, shares_of
 from strainwave.identification.excitation.plan import (
     USUAL_DURATIONS,
     Expectation,
@@ -69,51 +70,60 @@ def plan_loops(
     >>> [step.settings["measured_at"] for step in plan.steps], round(plan["bearing, dry"].before, 1)
     (['output'], 0.7)
     """
-    further = further_loops(loops, gear)
-    names = [*further.sources]
-    asked = [*arguments.names("wanted", wanted)]
+    measured, budget = fit_losses(loops, gear), arguments.seconds("time", time)
+    fit, shares = with_bearing(measured, gear), shares_of(measured)
+    places = _places(wanted, fit.names)
+    possible = [*options(fit, abs(gear.kinematics.ratio))]
+    cost = np.array([_duration(loop, fit.widths.reference_temperature) for loop, _ in possible])
+    taken, covariance = _taken(fit, [rows for _, rows in possible], places, cost, budget)
+    steps = [
+        PlannedMeasurement("torsion", possible[place][0].words, _settings(possible[place][0]), 1, float(cost[place]))
+        for place in taken
+    ]
+    reason = too_short(budget, cost) if _is_open(fit, fit.covariance, places) else {"reason": NO_LOOP_NEEDED}
+    notes = _notes(fit, shares, [loop for loop, _ in possible])
+    return ExperimentPlan(tuple(steps), tuple(_expectations(fit, shares, covariance, places)), tuple(notes), **reason)
+
+
+def _places(wanted: Sequence[str], names: Sequence[str]) -> list[int]:
+    """Return the places of the sources that are wanted by their names.
+
+    Raises:
+        ValueError: no such source
+    """
+    asked = arguments.names("wanted", wanted)
     for name in asked:
         if name not in (ALL_SOURCES, *names):
             known = listed(map(quoted, (*names, ALL_SOURCES)))
             raise ValueError(f"wanted: {quoted(name)} is no source of these loops; they are {known}")
-    chosen = names if ALL_SOURCES in asked else [name for name in names if name in asked]
-    places = [names.index(name) for name in chosen]
-    cost = np.array([_duration(loop, further.temperature) for loop in further.loops])
-    budget = arguments.seconds("time", time)
-    taken, covariance = _taken(further, places, cost, budget)
-    steps = tuple(
-        PlannedMeasurement("torsion", further.loops[place].words, _settings(further.loops[place]), 1, float(cost[place]))
-        for place in taken
-    )
-    expectations = tuple(_expectations(further, covariance, chosen))
-    is_open = _is_open(further, further.covariance, places)
-    reason = too_short(budget, cost) if is_open else {"reason": NO_LOOP_NEEDED}
-    return ExperimentPlan(steps, expectations, tuple(_notes(further)), **reason)
+    return [place for place, name in enumerate(names) if ALL_SOURCES in asked or name in asked]
 
 
-def _is_open(further: FurtherLoops, covariance: Array, wanted: Sequence[int]) -> bool:
+def _is_open(fit: LossFit, covariance: Array, wanted: Sequence[int]) -> bool:
     """True if noise leaves more open of a wanted share than the forms of the sources do."""
-    return bool(np.any(np.sqrt(np.diag(covariance)[wanted]) > further.floors[wanted]))
+    return bool(np.any((fit.sigma_by_noise(covariance) > fit.floors)[wanted]))
 
 
-def _taken(further: FurtherLoops, wanted: Sequence[int], cost: Array, budget: float) -> tuple[list[int], Array]:
+def _taken(
+    fit: LossFit, equations: Sequence[Array], wanted: Sequence[int], cost: Array, budget: float
+) -> tuple[list[int], Array]:
     """Return the places of the loops by their gain for their time, and the covariance of the unknowns after them.
 
-    The last one is that after which the forms of widths leave more of each share open than the noise does.
+    The gain is that of the logarithm of the sum of the variances of the wanted shares. The last loop is that after which the
+    forms of widths leave more of each share open than the noise does.
     """
-    information = np.asarray(np.linalg.inv(further.covariance), float)
-    taken, covariance, left = list[int](), further.covariance, budget
-    while _is_open(further, covariance, wanted):
-        affordable = np.flatnonzero(cost <= left)
-        if not affordable.size:
-            break
-        gain = score(information, wanted, "A") - score(information + further.information[affordable], wanted, "A")
+
+    def score(after: Array) -> float:
+        return float(np.log(np.sum(fit.sigma_by_noise(after)[wanted] ** 2)))
+
+    taken, covariance, left = list[int](), fit.covariance, budget
+    while _is_open(fit, covariance, wanted) and (affordable := np.flatnonzero(cost <= left)).size:
+        gain = score(covariance) - np.array([score(with_rows(covariance, equations[int(place)])) for place in affordable])
         place = int(affordable[np.argmax(gain / cost[affordable])])
         if place in taken:  # no other loop gains more than this one again
             break
         taken, left = [*taken, place], left - float(cost[place])
-        information = information + further.information[place]
-        covariance = np.asarray(np.linalg.inv(information), float)
+        covariance = with_rows(covariance, equations[place])
     return taken, covariance
 
 
@@ -136,25 +146,24 @@ def _settings(loop: LossLoop) -> dict[str, float | str]:
     return settings
 
 
-def _expectations(further: FurtherLoops, covariance: Array, wanted: Sequence[str]) -> Iterator[Expectation]:
+def _expectations(fit: LossFit, shares: LossShares, covariance: Array, wanted: Sequence[int]) -> Iterator[Expectation]:
     """Yield the standard deviation of each share before and after loops with this covariance."""
-    measured = {share.name: (share.share, share.sigma) for share in further.shares.shares}
-    for place, name in enumerate(further.sources):
-        value, before = measured.get(name, (np.nan, np.inf))
-        value = value if before <= MAX_SHARE_SIGMA else np.nan  # the loops so far divide a sum in some way
-        sigma, after = float(np.sqrt(covariance[place, place])), before
-        if sigma < (1.0 - MIN_GAIN_OF_SHARE) * np.sqrt(further.covariance[place, place]):
-            after = min(float(np.hypot(sigma, further.floors[place])), before)
-        by_forms = further.floors[place] > MAX_SHARE_SIGMA
+    measured = {share.name: (share.share, share.sigma) for share in shares.shares}
+    by_noise = zip(fit.sigma_by_noise(), fit.sigma_by_noise(covariance), fit.floors, strict=True)
+    for place, (name, (first, sigma, floor)) in enumerate(zip(fit.names, by_noise, strict=True)):
+        share, before = measured.get(name, (np.nan, np.inf))
+        value = share if before <= MAX_SHARE_SIGMA else np.nan  # the loops so far divide a sum in some way
+        after = min(float(np.hypot(sigma, floor)), before) if sigma < (1.0 - MIN_GAIN_OF_SHARE) * first else before
+        by_forms = floor > MAX_SHARE_SIGMA
         short = "the loops depart from the forms of all sources" if by_forms else "these loops do not separate it in this time"
         why = "" if after <= MAX_SHARE_SIGMA else short
-        yield Expectation(name, "1", value, before, after, name in wanted, why)
+        yield Expectation(name, "1", value, before, after, place in wanted, why)
 
 
-def _notes(further: FurtherLoops) -> Iterator[str]:
-    yield f"shares of the loss of a cycle, {quantity(further.shares.loss, 'J')}, of the loop of {further.shares.loop}"
-    forms = percent(float(further.floors.max()))
+def _notes(fit: LossFit, shares: LossShares, possible: Sequence[LossLoop]) -> Iterator[str]:
+    yield f"shares of the loss of a cycle, {quantity(shares.loss, 'J')}, of the loop of {shares.loop}"
+    forms = percent(float(fit.floors.max()))
     yield f"a share is separated below ± {percent(MAX_SHARE_SIGMA)}; widths that depart from their forms leave ± {forms}"
-    if any(loop.temperature > further.temperature for loop in further.loops):
+    if any(loop.temperature > fit.widths.reference_temperature for loop in possible):
         yield f"{WARMING_TIME / 60.0:.0f} min assumed until the gear is warmer throughout"
-    yield from further.shares.remarks
+    yield from shares.remarks

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,7 @@ CHANNEL_UNITS = {"output_angle": "rad", "output_speed": "rad/s", "transmission_e
 MAX_DRIVEN_STEP = 5e-4  # s, of the simulation: a vibration of the output is slower than those of a whole drive
 VIBRATION_TIME = 0.5  # s, after which the vibration with which a run in motion begins has decayed (assumed)
 MAX_DRIVEN_CUTOFF_SHARE = 0.24  # of the sample rate: bristles and the order of teeth are fast, and a quarter is noise
+UNKNOWN_BEGINS = {"torque": ("N.m", 1e-3), "output_speed": ("rad/s", 1e-4)}  # unit, and change for a derivative (assumed)
 OUTPUT_PLACES = {"output_angle", "twist"}  # initial quantities by which the output begins where it was
 END_PERIODS = 2.0  # periods of the cut-off, over which the end of the record spoils the smoothed motion (assumed)
 
@@ -133,10 +134,7 @@ class DriveLog(ComparedByFields):
     def beginning(self, duration: float) -> DriveLog:
         """Return the log up to a time [s]."""
         within = self.time <= duration
-        end = float(self.time[within][-1])
-        early = self.command.start < end
-        pieces = {name: getattr(self.command, name)[early] for name in ("start", "level", "slope")}
-        command = replace(self.command, duration=end, **pieces)
+        command = _until(self.command, float(self.time[within][-1]))
         return replace(self, command=command, time=self.time[within], measured=self.measured[:, within])
 
     @property
@@ -165,6 +163,12 @@ class DriveLog(ComparedByFields):
             predicted[row] += zero
             by_zero[unknown, row] = 1.0
         return predicted, np.concatenate((slopes[:, [names.index(name) for name in self.channels]], by_zero))
+
+
+def _until(course: Scenario, end: float) -> Scenario:
+    """Return a command up to a time [s]."""
+    early = course.start < end
+    return replace(course, duration=end, **{name: getattr(course, name)[early] for name in ("start", "level", "slope")})
 
 
 def _knots(time: Array, command: Array, every: int) -> NDArray[np.intp]:
@@ -240,6 +244,7 @@ class DrivenLog(ComparedByFields):
         dt: largest step of the simulation [s]
         held_back: torque of other bodies that holds the output back [N.m]
         delayed: names of the channels whose delay behind the input angle is an unknown
+        begins: initial values that are unknowns, by name the largest difference from those of the motion
     """
 
     motion: InputMotion
@@ -252,6 +257,7 @@ class DrivenLog(ComparedByFields):
     dt: float
     held_back: Scenario | float = 0.0
     delayed: tuple[str, ...] = ()
+    begins: Mapping[str, float] = field(default_factory=dict)
 
     @classmethod
     def of(
@@ -329,9 +335,27 @@ class DrivenLog(ComparedByFields):
 
     @property
     def nuisances(self) -> tuple[Nuisance, ...]:
-        """Zeros of encoders at the output and of the motor's effort; then delays."""
+        """Zeros of encoders at the output and of the motor's effort; then delays, and initial values."""
         zeros = (Nuisance(f"{name}_zero", CHANNEL_UNITS[name], zero) for name, zero in self.zeros.items())
-        return (*zeros, *(Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed))
+        delays = (Nuisance(f"{name}_delay", "s", 0.0) for name in self.delayed)
+        begins = (
+            Nuisance(f"initial_{name}", UNKNOWN_BEGINS[name][0], start, start - difference, start + difference)
+            for name, difference in self.begins.items()
+            for start in [self.motion.initial[name]]
+        )
+        return (*zeros, *delays, *begins)
+
+    def beginning(self, duration: float) -> DrivenLog:
+        """Return the log up to a time [s]."""
+        within = self.time <= duration
+        end = float(self.time[within][-1])
+        return replace(
+            self,
+            motion=replace(self.motion, command=_until(self.motion.command, end)),
+            held_back=_until(self.held_back, end) if isinstance(self.held_back, Scenario) else self.held_back,
+            measured=self.measured[:, within],
+            **{name: getattr(self, name)[within] for name in ("angle", "speed", "time")},
+        )
 
     def with_delays(self, *channels: str) -> DrivenLog:
         """Return the same, with the delay of these channels behind the input angle as unknowns.
@@ -343,6 +367,14 @@ class DrivenLog(ComparedByFields):
             arguments.one_of("the name of a delayed channel", name, self.channels)
         return replace(self, delayed=channels)
 
+    def with_unknown_begin(self, torque: float, output_speed: float) -> DrivenLog:
+        """Return the same, with the initial torque and speed of the output as unknowns, within these differences [N.m, rad/s].
+
+        An output without damping vibrates for ever by what they are off. If damping ends the vibration before the comparison
+        begins, no limit but this one keeps them from making up for errors of the damping.
+        """
+        return replace(self, begins={"torque": torque, "output_speed": output_speed})
+
     def step(self, model: Drive) -> float:
         """Return the largest step of a simulation of a model [s]."""
         return fine_enough(driven(model), self.dt, MIN_STEP_SHARE * self.dt)
@@ -353,11 +385,16 @@ class DrivenLog(ComparedByFields):
         described = _core.parameters(model)
         of_drive = [number for number in numbers if described[number][0] in places]
         names = list(outputs(moved))
-        run, slopes, first = self._run(moved, [places[described[number][0]] for number in of_drive])
-        predicted = np.stack([self._shown(model, name, run[_measured_by(name)][first:]) for name in self.channels])
+        zeros, delays, begins = np.split(nuisances, np.cumsum([len(self.zeros), len(self.delayed)]))
+        run, slopes, first = self._run(moved, [places[described[number][0]] for number in of_drive], begins)
+        predicted = self._channels(model, run, first)
         derivatives = np.zeros((len(numbers) + len(nuisances), *predicted.shape))
         of_known = dict(zip(of_drive, slopes, strict=True))
         torque = run["motor_torque"][first:]
+        changes = np.diag([UNKNOWN_BEGINS[name][1] for name in self.begins])
+        for unknown, change in enumerate(changes, len(derivatives) - len(begins)):
+            other, *_ = self._run(moved, [], begins + change)
+            derivatives[unknown] = (self._channels(model, other, first) - predicted) / change.sum()
         for row, name in enumerate(self.channels):
             for unknown, number in enumerate(numbers):
                 if number in of_known:
@@ -365,11 +402,11 @@ class DrivenLog(ComparedByFields):
                     derivatives[unknown, row] = rate * self._scale(model, name)
                 elif name in EFFORTS:
                     derivatives[unknown, row] = self._by_motor(model, number, name, torque)
-        zeros, delays = np.split(nuisances, [len(self.zeros)])
+        moving = [*range(len(numbers)), *range(len(derivatives) - len(begins), len(derivatives))]
         for unknown, (name, delay) in enumerate(zip(self.delayed, delays, strict=True), len(numbers) + len(zeros)):
             row = self.channels.index(name)
-            series = self._late(np.concatenate([predicted[np.newaxis, row], derivatives[: len(numbers), row]]), float(delay))
-            predicted[row], derivatives[: len(numbers), row], derivatives[unknown, row] = series[0], series[1:-1], -series[-1]
+            series = self._late(np.concatenate([predicted[np.newaxis, row], derivatives[moving, row]]), float(delay))
+            predicted[row], derivatives[moving, row], derivatives[unknown, row] = series[0], series[1:-1], -series[-1]
         for unknown, (name, zero) in enumerate(zip(self.zeros, zeros, strict=True), len(numbers)):
             predicted[self.channels.index(name)] += zero
             derivatives[unknown, self.channels.index(name)] = 1.0
@@ -377,15 +414,16 @@ class DrivenLog(ComparedByFields):
 
     def gear_torque(self, model: Drive) -> Array:
         """Return the torque that the gear transmits at the instants compared [N.m], shape (n,)."""
-        run, _, first = self._run(driven(model), [])
+        run, _, first = self._run(driven(model), [], np.array([self.motion.initial[name] for name in self.begins]))
         torque: Array = run["torque"][first:]
         return torque
 
-    def _run(self, moved: Drive, numbers: Sequence[int]) -> tuple[Recording, Array, int]:
+    def _run(self, moved: Drive, numbers: Sequence[int], begins: Array) -> tuple[Recording, Array, int]:
         """Return a run along the motion, its derivatives by numbers of the drive, and the first row compared."""
         samples = self.time if self.time[0] == 0.0 else np.append(0.0, self.time)
         acting = Excitation(self.motion.command, self.held_back)
-        run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, self.motion.initial)
+        initial = {**self.motion.initial, **dict(zip(self.begins, begins.tolist(), strict=True))}
+        run, slopes = differentiate(moved, acting, numbers, self.step(moved), samples, initial)
         return run, slopes, len(samples) - len(self.time)
 
     def _late(self, series: Array, delay: float) -> Array:
@@ -400,6 +438,10 @@ class DrivenLog(ComparedByFields):
     def _scale(self, model: Drive, name: str) -> float:
         """Return a channel over the output that it measures."""
         return per_torque(model, name) if name in EFFORTS else 1.0
+
+    def _channels(self, model: Drive, run: Recording, first: int) -> Array:
+        """Return the channels of a run from a row on, shape (channels, n)."""
+        return np.stack([self._shown(model, name, run[_measured_by(name)][first:]) for name in self.channels])
 
     def _shown(self, model: Drive, name: str, values: Array) -> Array:
         induced = float(getattr(model.motor, "back_emf", 0.0)) * self.speed if name == "voltage" else 0.0

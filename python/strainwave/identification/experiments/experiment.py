@@ -26,11 +26,14 @@ class Nuisance:
         name: what it is
         unit: its unit
         start: where a fit starts
+        low, high: its limits
     """
 
     name: str
     unit: str
     start: float
+    low: float = -np.inf
+    high: float = np.inf
 
 
 class Experiment(Protocol):

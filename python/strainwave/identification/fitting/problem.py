@@ -157,8 +157,8 @@ class Problem:
 
     def limits(self) -> Array:
         """Return the lowest and highest value of each unknown, shape (unknowns, 2)."""
-        endless = [(-np.inf, np.inf)] * (self.size - len(self.plan.unknowns))
-        return np.array([(each.low, each.high) for each in self.plan.unknowns] + endless).reshape(-1, 2)
+        nuisances = [(each.low, each.high) for record in self.records for each in record.of_measurement]
+        return np.array([(each.low, each.high) for each in self.plan.unknowns] + nuisances).reshape(-1, 2)
 
     def predict(self, x: Array) -> list[tuple[Array, Array]]:
         """Return predictions and derivatives of each record; the last are kept, as solvers ask for one after the other."""

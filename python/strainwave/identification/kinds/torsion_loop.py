@@ -25,7 +25,7 @@ from strainwave.identification.candidates.torsion import (
     plain_error,
 )
 from strainwave.identification.candidates.torsion.candidate import MIN_ERROR_SHARE, asymmetry_in_words
-from strainwave.identification.candidates.torsion.losses import loss_shares
+from strainwave.identification.candidates.torsion.losses.shares import loss_shares
 from strainwave.identification.candidates.torsion.ranking import rank_loop
 from strainwave.identification.candidates.torsion.spread import spread_by_models, spread_by_shape
 from strainwave.identification.checks.sizes import clipping, hint_of_ratio, stiffness_of_loop

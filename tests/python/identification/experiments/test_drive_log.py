@@ -9,7 +9,8 @@ import pytest
 import strainwave as sw
 from strainwave import _core
 from strainwave.identification.experiments.drive_log import DriveLog, DrivenLog
-from strainwave.identification.fitting.fit import experiment_of
+from strainwave.identification.fitting.fit import experiment_of, problem_of
+from strainwave.identification.fitting.unknowns import plan
 
 RATIO = 50.0
 NOISE = 0.01  # of the range of what is measured, but for the output angle: of that of the transmission error
@@ -132,6 +133,29 @@ def test_delays_shift_channels_and_their_derivatives() -> None:
     assert slopes[-1, 0, inside] == pytest.approx(((there[1] - there[0]) / 2e-5)[inside], abs=1e-4)
     with pytest.raises(ValueError, match="delayed channel"):
         log.with_delays("torque")
+
+
+def test_an_initial_torque_and_speed_that_are_wrong_are_corrected_within_their_limits() -> None:
+    """The drive begins at rest without load; damping lets the vibration live for the first samples only."""
+    log = DrivenLog.of(measured(0), TRUTH, ["output_angle"], initial={"torque": 2.0, "output_speed": 0.02})
+    by_name = {each.path: each for each in sw.fit(TRUTH, log.with_unknown_begin(10.0, 0.1), ["gear.stiffness.k"]).estimates}
+    assert [*by_name][-2:] == ["initial_torque", "initial_output_speed"]
+    assert by_name["initial_torque"].sigma < 0.5
+    assert abs(by_name["initial_torque"].value) < 4.0 * by_name["initial_torque"].sigma
+    assert by_name["initial_output_speed"].sigma < 5e-3
+    assert abs(by_name["initial_output_speed"].value) < 4.0 * by_name["initial_output_speed"].sigma
+    near = log.with_unknown_begin(0.5, 0.01)
+    limits = problem_of(plan(TRUTH, [""], ["gear.stiffness.k"]), TRUTH, [near], [None]).limits()
+    assert limits[-3:].tolist() == [[-np.inf, np.inf], [1.5, 2.5], [0.01, 0.03]]
+
+
+def test_the_beginning_of_a_log_is_predicted_as_in_the_whole() -> None:
+    log = DrivenLog.of(measured(0).with_column("rigid_torque", clean().time, "N.m"), TRUTH, ["output_angle"])
+    beginning = log.beginning(0.7)
+    assert log.time[len(beginning.time) - 1] == beginning.time[-1] <= 0.7 < log.time[len(beginning.time)]
+    (early, _), (whole, _) = (each.predict(TRUTH, [], np.zeros(1)) for each in (beginning, log))
+    assert early == pytest.approx(whole[:, : early.shape[1]], abs=1e-9)
+    assert beginning.measured.shape == early.shape
 
 
 def test_known_torque_of_other_bodies_acts_at_the_output() -> None:

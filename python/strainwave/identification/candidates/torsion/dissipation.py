@@ -151,8 +151,9 @@ def pairs(gear: Gear) -> list[tuple[float, float]]:
 
 
 def maxwell(elements: Sequence[tuple[float, float]]) -> hysteresis.MaxwellSlip:
-    """Return Maxwell elements of these stiffnesses and breakaways."""
-    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in elements], breakaway=[f for _, f in elements])
+    """Return Maxwell elements of these stiffnesses and breakaways, in the order in which they slip."""
+    in_order = sorted(elements, key=lambda element: element[1] / max(element[0], 1e-300))
+    return hysteresis.MaxwellSlip(stiffness=[k for k, _ in in_order], breakaway=[f for _, f in in_order])
 
 
 def _neighbours(weights: Array, slips: Array) -> hysteresis.MaxwellSlip:
