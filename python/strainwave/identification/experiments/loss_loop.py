@@ -63,14 +63,14 @@ class LossLoop(ComparedByFields):
             raise ValueError("it reverses at several amplitudes; give a recording for each amplitude")
         first = 1 if away[0] else 0
         ways = [slice(begin, end) for begin, end in zip(ends[first:-1], ends[first + 1 :], strict=True)]
-        if len(ways) < 2 or min(way.stop - way.start for way in ways[:2]) < MIN_SAMPLES_PER_WAY:
-            raise ValueError(f"the width of a loop needs ways up and down of at least {MIN_SAMPLES_PER_WAY} samples each")
         sense, rate = np.zeros(len(loop.twist)), np.full(len(loop.twist), np.nan)
         time = None
         if "time" in recording and loop.moments is not None:
             time = loop.moments * float(np.ptp(recording.time))
         for way in ways:
             sense[way] = np.sign(loop.twist[way.stop] - loop.twist[way.start])
+        _check_ways(sense)
+        for way in ways:
             if time is not None:
                 path = np.polynomial.Polynomial.fit(time[way], loop.twist[way], RATE_DEGREE)
                 rate[way] = np.abs(path.deriv()(time[way]))
@@ -82,9 +82,14 @@ class LossLoop(ComparedByFields):
         return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, frequency, warmth, (low, high))
 
     def apart(self, share: float) -> LossLoop:
-        """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike."""
+        """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike.
+
+        Raises:
+            ValueError: few samples are left of a way
+        """
         low, high = self.ends
         kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
+        _check_ways(self.sense[kept])
         series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
         return LossLoop(*series, self.ratio, self.frequency, self.temperature, self.ends)
 
@@ -97,6 +102,12 @@ class LossLoop(ComparedByFields):
         ends = -reach / stiffness, reach / stiffness
         frequency = np.sqrt(3.0) * rate / ends[1]
         return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, frequency, temperature, ends)
+
+    @property
+    def area(self) -> float:
+        """Work that a cycle takes, whatever loses it [J]."""
+        up, down = (way[np.argsort(self.twist[way])] for way in (np.flatnonzero(self.sense == sense) for sense in (1.0, -1.0)))
+        return float(np.trapezoid(self.torque[up], self.twist[up]) - np.trapezoid(self.torque[down], self.twist[down]))
 
     @property
     def is_timed(self) -> bool:
@@ -120,6 +131,13 @@ class LossLoop(ComparedByFields):
         at_rate = f", {quantity(self.speed, 'rad/s')} of twist" if self.is_timed else ""
         warm = f", {self.temperature - 273.15:.0f} °C" if self.is_warm else ""
         return f"±{quantity(0.5 * float(np.ptp(self.torque)), 'N.m')} at the {side}{at_rate}{warm}"
+
+
+def _check_ways(sense: Array) -> None:
+    if min(np.count_nonzero(sense == 1.0), np.count_nonzero(sense == -1.0)) < MIN_SAMPLES_PER_WAY:
+        raise ValueError(
+            f"the width of a loop needs ways up and down of at least {MIN_SAMPLES_PER_WAY} samples each, between its reversals"
+        )
 
 
 def _frequency(time: Array, twist: Array, rate: Array) -> float:

@@ -17,6 +17,7 @@ from strainwave.identification.candidates.torsion.losses.sources import Curve, W
 from strainwave.identification.experiments.loss_loop import MAX_REACH_DIFFERENCE, LossLoop
 from strainwave.statistics.covariance import posterior_of
 from strainwave.statistics.linear_fit import linear_fit, solved
+from strainwave.typeset import quantity
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ SAMPLES_PER_PIECE = 12
 END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
 MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from which on both senses have a width of their own
 STARTS_OF_TIME = (-1.0, 0.0, 1.0)  # standard deviations of the logarithm of the relaxation time
+MAX_UNEXPLAINED_AREA = 0.25  # of the largest loop, by the forms of all sources: play and snags have others
 MIN_MISFIT_SIGMA = 4.0  # standard deviations of a loop's width that no source explains
 
 
@@ -109,7 +111,8 @@ def fit_losses(recordings: Sequence[Recording], gear: Gear) -> LossFit:
     """Fit all sources to torsion loops.
 
     Raises:
-        ValueError: a recording is no loop, there is none, or some have a time or a temperature and others have none
+        ValueError: a recording is no loop, there is none, some have a time or a temperature and others have none, or the forms
+            of the sources do not make the area of the largest loop
     """
     loops = [LossLoop.of(recording, arguments.gear(gear)) for recording in recordings]
     if not loops:
@@ -119,9 +122,20 @@ def fit_losses(recordings: Sequence[Recording], gear: Gear) -> LossFit:
             place = f"loop {has.index(False) + 1} of {len(has)}"
             raise ValueError(f"{place} has no {name}, others have one: give it to all or none")
     near, fit, far = _fits(loops, relaxing=True)
+    _check_area(loops[fit.largest], fit.total)
     if fit.widths.relaxation and not fit.shows_relaxation:
         near, fit, far = _fits(loops, relaxing=False)
     return replace(fit, shifts=np.array([near.shares - fit.shares, far.shares - fit.shares]))
+
+
+def _check_area(loop: LossLoop, explained: float) -> None:
+    """Raise a ValueError if the sources do not lose in a cycle what the loop does."""
+    if not abs(explained - loop.area) < MAX_UNEXPLAINED_AREA * abs(loop.area):
+        area, loss = quantity(loop.area, "J"), quantity(explained, "J")
+        raise ValueError(
+            f"a cycle of the loop of {loop.words} loses {area}, and the forms of friction, load and material make {loss} of "
+            "it: play, a snag or a drift widens it in another way; leave that loop out, or load beyond the play"
+        )
 
 
 def _fits(loops: Sequence[LossLoop], *, relaxing: bool) -> list[LossFit]:

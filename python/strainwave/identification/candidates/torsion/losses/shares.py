@@ -163,6 +163,8 @@ def _why(fit: LossFit, place: int) -> str:
     """Return why loops do not separate a source: the sum with others that they determine, and the loops that would."""
     if fit.sigma_by_noise()[place] <= MAX_SHARE_SIGMA:
         by_forms = percent(float(fit.floors[place]))
+        if fit.misfit == 0.0:
+            return f"what is left out next to the reversals changes it, by {by_forms} of the loss: add loops of other loads"
         return f"the loops depart from the forms of all sources, by {by_forms} of the loss: friction may slip little by little"
     covariance, further = fit.total**2 * fit.share_rows @ fit.covariance @ fit.share_rows.T, next_loops(fit, place)
     related = np.abs(covariance[place]) / np.sqrt(covariance[place, place] * np.diag(covariance))

@@ -71,3 +71,12 @@ def test_loops_of_several_amplitudes_and_of_mixed_conditions_are_refused() -> No
     )
     with pytest.raises(ValueError, match="needs ways up and down"):
         loss_shares([branch], GEAR)
+
+
+def test_a_loop_whose_area_no_source_makes_is_refused() -> None:
+    """Wide at its ends alone: the forms of friction, load and material make twice its area."""
+    way = np.sin(np.linspace(0.5, 4.5, 801) * np.pi)
+    torque = 20.0 * way + 2.0 * (np.abs(way) > 0.8) * np.sign(np.gradient(way))
+    snag = sw.Recording({"twist": 5e-4 * way, "torque": torque}, {"twist": "rad", "torque": "N.m"})
+    with pytest.raises(ValueError, match=r"loses 7\d\d µJ, and the forms of .* make .* mJ of it: play"):
+        loss_shares([snag], sw.load("hfuc-25-100"))
