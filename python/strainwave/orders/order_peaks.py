@@ -77,7 +77,6 @@ class _Fit:
     signs: tuple[float, ...]
     curve: Complex
     cost: float
-    noise: float
     sigma: Array
     heights: Array
 
@@ -256,7 +255,7 @@ class _Order:
         cost = float(np.vdot(residual, residual).real)
         gains = np.abs(factors.reshape(-1, len(self.turning))[powers:]).max(axis=1)
         heights = gains / (2.0 * values[1::2]) if len(values) else np.zeros(0)
-        return _Fit(values, signs, columns @ factors, cost, float(np.sqrt(cost / len(residual))), sigma, heights)
+        return _Fit(values, signs, columns @ factors, cost, sigma, heights)
 
     def _columns(self, values: Array, signs: Sequence[float], powers: int) -> Complex:
         share = self.speed / self.speed.max()

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
-from math import tau
+from math import comb, isnan, nan, tau
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,9 +74,9 @@ class RingMode:
         frequency: where the line meets the speed 0 [rad/s]. It is the natural frequency of the gear at rest if the line is
             straight; lobes that hold a ring in part bend it
         frequency_sigma: its standard deviation [rad/s]
-        slope: of the line, of frequency over speed [1], without sign
+        slope: of the line, of frequency over speed [1], without sign; nan by a sensor that stands
         slope_sigma: its standard deviation [1]
-        waves: the slope as a whole number; None if it is none
+        waves: the slope as a whole number; None if it is none, or by a sensor that stands
         damping: as a share of the critical one [1]
         damping_sigma: its standard deviation [1]
         peaks: of the orders that meet it
@@ -198,7 +198,7 @@ def ring_modes(
     peaks, curves, more = list[OrderPeak](), spectrum.amplitude, [_too_little(spectrum)]
     if not any(more):
         peaks, curves, more = _peaks(spectrum, {line.order: line.sigma for line in uneven})
-    modes = _modes(peaks, column in STANDING_COLUMNS)
+    modes = modes_of_peaks(peaks, float(np.ptp(spectrum.speed)) if len(spectrum.speed) else 0.0, column in STANDING_COLUMNS)
     return RingModes(
         modes,
         tuple(spectrum.orders.tolist()),
@@ -271,26 +271,35 @@ def _leaks(strong: OrderPeak, weak: OrderPeak) -> bool:
 
 @dataclass(frozen=True)
 class _Line:
-    """A line through peaks of several orders, each on its branch of the slope with this sign."""
+    """A line through peaks of several orders, each on its branch of the slope with this sign.
+
+    `chance` is the probability that all peaks but the first two lie on the line of those by chance.
+    """
 
     frequency: float
     slope: float
     covariance: Array
     peaks: tuple[OrderPeak, ...]
+    chance: float = 1.0
 
 
-def _modes(peaks: Sequence[OrderPeak], stands: bool) -> tuple[RingMode, ...]:
-    """Return the modes of lines through peaks, each peak in one: those of most peaks first, then the most exact ones."""
+def modes_of_peaks(peaks: Sequence[OrderPeak], speeds: float, stands: bool) -> tuple[RingMode, ...]:
+    """Return the modes of lines through peaks, each peak in one: those of most peaks first, then the most exact ones.
+
+    Args:
+        peaks: of orders
+        speeds: range of the speeds in which peaks were looked for [rad/s]
+        stands: True by a sensor that stands
+    """
     left, modes = list(peaks), list[RingMode]()
-    pairs = len(peaks) * (len(peaks) - 1) / 2
-    while lines := [line for line in _lines(left, stands) if _is_stated(line, pairs, stands)]:
+    while lines := [line for line in _lines(left, speeds, stands) if _is_stated(line, peaks, stands)]:
         best = max(lines, key=lambda line: (len(line.peaks), -line.covariance[1, 1]))
-        modes.append(_mode(best))
+        modes.append(_mode(best, stands))
         left = [peak for peak in left if peak not in best.peaks]
     return tuple(sorted(modes, key=lambda mode: mode.frequency))
 
 
-def _lines(peaks: Sequence[OrderPeak], stands: bool) -> Iterator[_Line]:
+def _lines(peaks: Sequence[OrderPeak], speeds: float, stands: bool) -> Iterator[_Line]:
     """Yield the line through each two peaks of different orders that have one damping, with all peaks that lie on it."""
     for first, second in combinations(peaks, 2):
         if first.order == second.order or not _one_damping(first, second):
@@ -299,14 +308,16 @@ def _lines(peaks: Sequence[OrderPeak], stands: bool) -> Iterator[_Line]:
             line = _fitted([first, second], [1.0, sign], stands)
             if line is None or abs(line.slope) > MAX_SLOPE or line.frequency <= 0.0:
                 continue
-            on, signs = [first, second], [1.0, sign]
+            on, signs, chance = [first, second], [1.0, sign], 1.0
             for peak in peaks:
                 side = _side_of(line, peak)
                 if peak not in on and side and all(_one_damping(peak, other) for other in (first, second)):
                     on.append(peak)
                     signs.append(side)
+                    passed = peak.order * speeds  # rad/s; on either branch, above or below it
+                    chance *= min(4.0 * _reach(line, peak, side) / passed, 1.0)
             whole = _fitted(on, signs, stands)
-            yield whole if whole is not None else line
+            yield replace(line if whole is None else whole, chance=chance)
 
 
 def _one_damping(one: OrderPeak, other: OrderPeak) -> bool:
@@ -324,12 +335,17 @@ def _point(peak: OrderPeak, slope: float) -> tuple[float, float]:
 def _side_of(line: _Line, peak: OrderPeak) -> float:
     """Return 1 or -1 if a peak lies on the branch of the slope with this sign; 0 on neither."""
     for sign in (1.0, -1.0):
-        of = np.array([1.0, sign * peak.speed])
-        frequency, sigma = _point(peak, sign * line.slope)
+        frequency = peak.order * peak.speed
         apart = abs(frequency - line.frequency - sign * line.slope * peak.speed)
-        if apart < MAX_SIGMAS * np.sqrt(sigma**2 + of @ line.covariance @ of) and apart < 0.01 * frequency:
+        if apart < _reach(line, peak, sign) and apart < 0.01 * frequency:
             return sign
     return 0.0
+
+
+def _reach(line: _Line, peak: OrderPeak, sign: float) -> float:
+    """Return how far a peak may be from a branch to lie on it [rad/s]."""
+    of = np.array([1.0, sign * peak.speed])
+    return float(MAX_SIGMAS * np.sqrt(_point(peak, sign * line.slope)[1] ** 2 + of @ line.covariance @ of))
 
 
 def _fitted(peaks: Sequence[OrderPeak], signs: Sequence[float], stands: bool) -> _Line | None:
@@ -353,23 +369,31 @@ def _fitted(peaks: Sequence[OrderPeak], signs: Sequence[float], stands: bool) ->
     return _Line(float(values[0]), slope, covariance * max(1.0, float(left @ left) / max(free, 1)), tuple(peaks))
 
 
-def _is_stated(line: _Line, pairs: float, stands: bool) -> bool:
-    """Return True if peaks of different modes would not lie on such a line by chance."""
+def _is_stated(line: _Line, peaks: Sequence[OrderPeak], stands: bool) -> bool:
+    """Return True if peaks of different modes would not lie on such a line by chance.
+
+    Of all pairs of peaks that have its damping, and all choices of further ones, so many lines are expected.
+    """
+    alike, count = sum(all(_one_damping(peak, other) for other in line.peaks[:2]) for peak in peaks), len(line.peaks)
+    pairs = alike * (alike - 1) / 2
     if stands:
         sigma = float(np.sqrt(line.covariance[0, 0])) / line.frequency
         return pairs * 2.0 * MAX_SIGMAS * sigma < MAX_CHANCE
     reach = MAX_SIGMAS * float(np.sqrt(line.covariance[1, 1]))
-    if len(line.peaks) > 2:
-        return reach < MAX_FROM_WHOLE
-    return abs(line.slope - round(line.slope)) < reach and 2.0 * 2.0 * reach * pairs < MAX_CHANCE
+    is_whole = abs(line.slope - round(line.slope)) < reach
+    if not reach < MAX_FROM_WHOLE or not (is_whole or count > 2):
+        return False
+    expected = 2.0 * pairs * comb(max(alike - 2, 0), count - 2) * line.chance
+    return expected * (2.0 * reach if is_whole else 1.0) < MAX_CHANCE
 
 
-def _mode(line: _Line) -> RingMode:
+def _mode(line: _Line, stands: bool) -> RingMode:
     sigmas = np.sqrt(np.diag(line.covariance))
     weights = np.array([1.0 / peak.damping_sigma**2 for peak in line.peaks])
     damping = float(weights @ [peak.damping for peak in line.peaks] / weights.sum())
-    slope, slope_sigma = abs(line.slope), float(sigmas[1])
-    waves = round(slope) if abs(slope - round(slope)) + 2.0 * slope_sigma < MAX_FROM_WHOLE else None
+    slope, slope_sigma = (nan, nan) if stands else (abs(line.slope), float(sigmas[1]))
+    is_whole = not stands and abs(slope - round(slope)) + 2.0 * slope_sigma < MAX_FROM_WHOLE
+    waves = round(slope) if is_whole else None
     return RingMode(
         line.frequency,
         float(sigmas[0]),
@@ -388,10 +412,7 @@ def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
     alone = list(dict.fromkeys(number(peak.order, 5) for peak in peaks if peak not in of_modes))
     if not alone:
         return []
-    return [
-        f"{named('order', alone)} may pass a mode: no other order confirms it, and its frequency "
-        "and waves are not separable. A second order that passes it, or a slower run-up, separates them"
-    ]
+    return [f"{named('order', alone)} may pass a mode: no other order confirms it; record a second one that passes it"]
 
 
 # ---- Words and picture -----------------------------------------------------------------------------------------------
@@ -400,7 +421,9 @@ def _alone(peaks: Sequence[OrderPeak], modes: Sequence[RingMode]) -> list[str]:
 def words_of(mode: RingMode) -> str:
     """Return a mode in words."""
     frequency = f"{uncertain(mode.frequency / tau, mode.frequency_sigma / tau)} Hz"
-    if mode.waves is None:
+    if isnan(mode.slope):
+        waves = ", waves not determined by a sensor that stands"
+    elif mode.waves is None:
         slope = uncertain(mode.slope, mode.slope_sigma)
         waves = f", slope {slope} over the speed, no whole number of waves: the lobes hold it in part"
     else:

@@ -10,8 +10,9 @@ import pytest
 import strainwave as sw
 from scipy.integrate import cumulative_trapezoid
 from scipy.signal import lfilter
-from strainwave.orders.order_peaks import peaks_of
+from strainwave.orders.order_peaks import OrderPeak, peaks_of
 from strainwave.orders.orders_over_speed import OrdersOverSpeed, Turning
+from strainwave.orders.ring_modes import modes_of_peaks
 
 UNITS = {"time": "s", "input_angle": "rad", "output_angle": "rad"}
 Mode = tuple[float, float, int, Mapping[float, complex]]  # frequency [Hz], damping, waves, force of each order
@@ -86,7 +87,21 @@ def test_a_sensor_that_stands_states_frequencies_without_slope() -> None:
     recordings = at_constant_speeds([(60.0, 0.03, 0, {2.0: 4e-3, 4.0: 3e-3})], 40.0, column="vibration", noise=1e-4)
     (mode,) = sw.orders.ring_modes(recordings, "vibration", orders=[2.0, 4.0]).modes
     assert near(mode, 60.0, 0.03)
-    assert mode.slope == 0.0
+    assert np.isnan(mode.slope)
+    assert mode.waves is None
+
+
+def test_unrelated_peaks_of_one_damping_are_seldom_a_mode() -> None:
+    random, stated = np.random.default_rng(1), 0
+    for _ in range(60):
+        speeds, orders = random.uniform(60.0, 300.0, 8), random.integers(1, 9, 8)
+        dampings = 0.02 * (1.0 + 0.03 * random.standard_normal(8))
+        peaks = [
+            OrderPeak(float(order), 0.0, float(speed), 1e-3 * float(speed), float(damping), 6e-4, 1.0)
+            for order, speed, damping in zip(orders, speeds, dampings, strict=True)
+        ]
+        stated += bool(modes_of_peaks(peaks, 240.0, False))
+    assert stated <= 6  # MAX_CHANCE of 60 is 3
 
 
 def in_a_run_up(duration: float) -> sw.Recording:

@@ -36,6 +36,7 @@ class LossLoop(ComparedByFields):
             a clock
         temperature: mean [K]; not a number if it was not measured
         ends: smallest and largest twist, at the reversals [rad]
+        reach: half of the range of the torque, reversals included [N.m]
     """
 
     twist: Array
@@ -46,6 +47,7 @@ class LossLoop(ComparedByFields):
     frequency: float
     temperature: float
     ends: tuple[float, float]
+    reach: float
 
     @classmethod
     def of(cls, recording: Recording, gear: Gear) -> LossLoop:
@@ -79,7 +81,8 @@ class LossLoop(ComparedByFields):
         warmth = float(np.mean(recording.values("temperature", "K"))) if "temperature" in recording else np.nan
         ratio = 0.0 if loop.input_ratio is None else abs(loop.input_ratio)
         frequency = np.nan if time is None else _frequency(time[kept], loop.twist[kept] - 0.5 * (low + high), rate[kept])
-        return cls(loop.twist[kept], loop.torque[kept], sense[kept], rate[kept], ratio, frequency, warmth, (low, high))
+        series, reach = (loop.twist[kept], loop.torque[kept], sense[kept], rate[kept]), 0.5 * float(np.ptp(loop.torque[kept]))
+        return cls(*series, ratio, frequency, warmth, (low, high), reach)
 
     def apart(self, share: float) -> LossLoop:
         """Return the loop without what is nearer to a reversal than a share of the span, on both ways alike.
@@ -91,7 +94,7 @@ class LossLoop(ComparedByFields):
         kept = np.minimum(self.twist - low, high - self.twist) >= share * (high - low)
         _check_ways(self.sense[kept])
         series = (self.twist[kept], self.torque[kept], self.sense[kept], self.rate[kept])
-        return LossLoop(*series, self.ratio, self.frequency, self.temperature, self.ends)
+        return LossLoop(*series, self.ratio, self.frequency, self.temperature, self.ends, self.reach)
 
     @classmethod
     def planned(cls, ratio: float, stiffness: float, reach: float, rate: float, temperature: float) -> LossLoop:
@@ -101,13 +104,15 @@ class LossLoop(ComparedByFields):
         sense = np.repeat([1.0, -1.0], len(up))
         ends = -reach / stiffness, reach / stiffness
         frequency = np.sqrt(3.0) * rate / ends[1]
-        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, frequency, temperature, ends)
+        return cls(torque / stiffness, torque, sense, np.full(len(torque), rate), ratio, frequency, temperature, ends, reach)
 
     @property
     def area(self) -> float:
-        """Work that a cycle takes, whatever loses it [J]."""
-        up, down = (way[np.argsort(self.twist[way])] for way in (np.flatnonzero(self.sense == sense) for sense in (1.0, -1.0)))
-        return float(np.trapezoid(self.torque[up], self.twist[up]) - np.trapezoid(self.torque[down], self.twist[down]))
+        """Work that a cycle takes, whatever loses it [J]. Each way ends short of a reversal: a line takes the spring out."""
+        torque = self.torque - np.polynomial.Polynomial.fit(self.twist, self.torque, 1)(self.twist)
+        ways = (np.flatnonzero(self.sense == sense) for sense in (1.0, -1.0))
+        up, down = (way[np.argsort(self.twist[way])] for way in ways)
+        return float(np.trapezoid(torque[up], self.twist[up]) - np.trapezoid(torque[down], self.twist[down]))
 
     @property
     def is_timed(self) -> bool:
@@ -130,7 +135,7 @@ class LossLoop(ComparedByFields):
         side = "input with the output locked" if self.ratio else "output with the input locked"
         at_rate = f", {quantity(self.speed, 'rad/s')} of twist" if self.is_timed else ""
         warm = f", {self.temperature - 273.15:.0f} °C" if self.is_warm else ""
-        return f"±{quantity(0.5 * float(np.ptp(self.torque)), 'N.m')} at the {side}{at_rate}{warm}"
+        return f"±{quantity(self.reach, 'N.m')} at the {side}{at_rate}{warm}"
 
 
 def _check_ways(sense: Array) -> None:

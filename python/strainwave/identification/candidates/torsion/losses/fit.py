@@ -29,7 +29,7 @@ ROUNDS_OF_CURVE = 2  # in which curve and widths are fitted in turn
 MIN_NOISE_SHARE = 1e-5  # of the torque: no sensor has less noise
 MAX_PIECES_OF_CURVE = 24  # cubic pieces of the curve
 SAMPLES_PER_PIECE = 12
-END_SHARE = 0.1  # of the span next to a reversal, where the curve is a line
+END_SHARE, MIN_AT_END = 0.1, 3  # of the span next to a reversal, where the curve is a line; twists there
 MIN_BOTH_SENSES = 0.1  # of the span of the torque on either side of zero, from which on both senses have a width of their own
 STARTS_OF_TIME = (-1.0, 0.0, 1.0)  # standard deviations of the logarithm of the relaxation time
 MAX_UNEXPLAINED_AREA = 0.25  # of the largest loop, by the forms of all sources: play and snags have others
@@ -111,8 +111,8 @@ def fit_losses(recordings: Sequence[Recording], gear: Gear) -> LossFit:
     """Fit all sources to torsion loops.
 
     Raises:
-        ValueError: a recording is no loop, there is none, some have a time or a temperature and others have none, or the forms
-            of the sources do not make the area of the largest loop
+        ValueError: a recording is no loop, there is none, some have a time or a temperature and others have none, or the
+            largest loop has no loss beyond the noise, or one that the forms of the sources do not make
     """
     loops = [LossLoop.of(recording, arguments.gear(gear)) for recording in recordings]
     if not loops:
@@ -122,16 +122,21 @@ def fit_losses(recordings: Sequence[Recording], gear: Gear) -> LossFit:
             place = f"loop {has.index(False) + 1} of {len(has)}"
             raise ValueError(f"{place} has no {name}, others have one: give it to all or none")
     near, fit, far = _fits(loops, relaxing=True)
-    _check_area(loops[fit.largest], fit.total)
+    _check_loss(loops[fit.largest], fit)
     if fit.widths.relaxation and not fit.shows_relaxation:
         near, fit, far = _fits(loops, relaxing=False)
     return replace(fit, shifts=np.array([near.shares - fit.shares, far.shares - fit.shares]))
 
 
-def _check_area(loop: LossLoop, explained: float) -> None:
-    """Raise a ValueError if the sources do not lose in a cycle what the loop does."""
-    if not abs(explained - loop.area) < MAX_UNEXPLAINED_AREA * abs(loop.area):
-        area, loss = quantity(loop.area, "J"), quantity(explained, "J")
+def _check_loss(loop: LossLoop, fit: LossFit) -> None:
+    """Raise a ValueError if a loop shows no loss beyond the noise, or one that is not that of the sources."""
+    count = len(fit.unit_loss)
+    sigma = float(np.sqrt(fit.unit_loss @ fit.covariance[:count, :count] @ fit.unit_loss))
+    if not fit.total > MIN_MISFIT_SIGMA * sigma:
+        lost = f"{quantity(fit.total, 'J')} ± {quantity(sigma, 'J')} by the forms of friction, load and material"
+        raise ValueError(f"a cycle of the loop of {loop.words} loses {lost}: noise or other forms hide it; load it further")
+    if not abs(fit.total - loop.area) < MAX_UNEXPLAINED_AREA * abs(loop.area):
+        area, loss = quantity(loop.area, "J"), quantity(fit.total, "J")
         raise ValueError(
             f"a cycle of the loop of {loop.words} loses {area}, and the forms of friction, load and material make {loss} of "
             "it: play, a snag or a drift widens it in another way; leave that loop out, or load beyond the play"
@@ -284,5 +289,6 @@ def _splines(loop: LossLoop) -> Array:
 
 def _at_end(twist: Array, torque: Array, end: float) -> float:
     """Return the torque at a reversal by a line through the curve next to it [N.m]."""
-    near = np.abs(twist - end) <= END_SHARE * float(np.ptp(twist))
+    away = np.round(np.abs(twist - end) / np.ptp(twist), 6)
+    near = away <= max(END_SHARE, float(np.unique(away)[:MIN_AT_END][-1]))
     return float(np.polyval(np.polyfit(twist[near] - end, torque[near], 1), 0.0))
