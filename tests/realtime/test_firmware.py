@@ -33,6 +33,7 @@ LARGE = (
     *("hysteresis::Preisach", "structure::Staged", "material::GeneralisedMaxwell", "sensor::Delayed"),
     "kinematic_error::ToothErrors",
 )
+# Measured at most: 30 848 B of stack with three of these, 35 395 B of code with bodies.
 STACK, STACK_OF_LARGE = 20 * 1024, 6 * 1024  # B; the former with laws that modulate others at all three places
 CODE, CODE_OF_BODIES = 32 * 1024, 4 * 1024  # B; the latter for bodies within the gear, a bearing's balls and a material
 LIBM = {"atanf", "cosf", "expf", "logf", "rintf", "sinf", "sincosf", "sqrtf"}

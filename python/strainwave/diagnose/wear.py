@@ -186,8 +186,8 @@ def wear_life(
         sigma: standard deviation that the tests state of each; the noise is at least that
 
     Raises:
-        ValueError: a name is none of these, numbers of tests differ or are too few, all are of the same work, or the first
-            test is past a limit
+        ValueError: a name is none of these, numbers of tests differ or are too few, all are of the same work, a resolution or
+            a standard deviation is negative, or the first test is past a limit
 
     >>> life = wear_life([0.0, 1e6, 2e6, 3e6], {"play": [1.0e-4, 1.31e-4, 1.58e-4, 1.92e-4]}, {"play": 4e-4})
     >>> round(life.remaining / 1e6, 1), life.low < life.remaining < life.high, round(life.fault.play, 7)
@@ -198,18 +198,11 @@ def wear_life(
     done = arguments.numbers("work", work)
     _check(done, tests, limits)
     confidence = 1.0 - (1.0 - CONFIDENCE_LEVEL) / len(tests)
-    steps = {name: resolution_of(values) for name, values in tests.items()} | dict(resolution or {})
+    steps = {name: resolution_of(values) for name, values in tests.items()} | _of_tests("resolution", resolution, tests)
+    sigmas = dict.fromkeys(tests, 0.0) | _of_tests("sigma", sigma, tests)
     trends = tuple(
-        _trend(
-            name,
-            done,
-            arguments.numbers(name, tests[name]),
-            limits[name],
-            confidence,
-            steps[name],
-            (sigma or {}).get(name, 0.0),
-        )
-        for name in tests
+        _trend(name, done, arguments.numbers(name, values), limits[name], confidence, steps[name], sigmas[name])
+        for name, values in tests.items()
     )
     first = min(trends, key=lambda trend: trend.remaining)
     return WearLife(
@@ -249,6 +242,16 @@ def _check(work: Array, tests: Mapping[str, Sequence[float]], limits: Mapping[st
         raise ValueError(f"there are {len(work)} tests, at most {MAX_TESTS} are taken; give one row for each test, not a log")
     if float(np.ptp(work)) == 0.0:
         raise ValueError(f"all tests are after the same work, {work[0]:g} J; a rate needs tests after different work")
+
+
+def _of_tests(argument: str, given: Mapping[str, float] | None, tests: Mapping[str, Sequence[float]]) -> dict[str, float]:
+    """Return numbers that are given of some tests, by their names."""
+    if unknown := [name for name in given or {} if name not in tests]:
+        raise ValueError(f"{argument} has {listed(map(quoted, unknown))}; the tests have {listed(map(quoted, tests))}")
+    return {
+        name: arguments.number(f"{argument}[{quoted(name)}]", value, QUANTITY_UNITS[name], low=0.0)
+        for name, value in (given or {}).items()
+    }
 
 
 def _trend(

@@ -11,13 +11,15 @@ import numpy as np
 from strainwave import arguments
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
-from strainwave.messages import listed
+from strainwave.messages import listed, named
+from strainwave.orders.lines import SpectrumLine
 from strainwave.orders.ring_modes import RingModes, passes_frequencies, ring_modes
 from strainwave.orders.run_up import RunUp, is_run_up, run_up
 from strainwave.orders.torque_ripple import Ripple, Side, ripple
 from strainwave.orders.two_encoders import TransmissionError, transmission_error
 from strainwave.presentation import Presented
 from strainwave.questions import LOG_AT_RATE, OF_SIDES, QuestionError
+from strainwave.typeset import number
 
 EFFORT_COLUMNS = (
     "joint_torque",
@@ -27,6 +29,7 @@ EFFORT_COLUMNS = (
     "vibration",
 )  # in which ripple is looked for, the best first
 ANGLE_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_angle", "input"), ("output_angle", "output"), ("angle", None))
+MAX_SHIFT, MAX_SIDE_LINE = 1.0, 8.0  # periods in a run-up, of an order that passes a resonance and of its side lines (assumed)
 SPEED_COLUMNS: tuple[tuple[str, Side | None], ...] = (("input_speed", "input"), ("output_speed", "output"), ("speed", None))
 
 
@@ -109,11 +112,28 @@ def orders_found(
     passing, curves = None, lines.curves
     if effort == "vibration" and "speed" in curves and is_run_up(curves["speed"]):
         passing = run_up(curves.time, curves["angle"], curves["speed"], curves["series"], lines.lines)
-        # An order that passes a resonance turns by half a period in a part of the record.
-        turned = [replace(line, order_sigma=hypot(line.order_sigma, 1.0 / lines.revolutions)) for line in lines.lines]
-        lines = replace(lines, lines=tuple(turned))
+        lines = _of_run_up(lines)
     lines = replace(lines, remarks=(*remarks, *lines.remarks))
     return OrdersFound(name, None, lines, () if passing is None else passing.remarks, passing)
+
+
+def _of_run_up(found: Ripple) -> Ripple:
+    """Return lines as exact as a run-up allows, without side lines of stronger ones.
+
+    An order that passes a resonance grows and falls there, and turns by half a period.
+    """
+    kept = list[SpectrumLine]()
+    for line in found.lines:
+        apart = [abs(line.order - other.order) * found.revolutions for other in kept if other.kind == "order"]
+        if line.kind != "order" or min(apart, default=MAX_SIDE_LINE) >= MAX_SIDE_LINE:
+            kept.append(replace(line, order_sigma=hypot(line.order_sigma, MAX_SHIFT / found.revolutions)))
+    if len(kept) == len(found.lines):
+        return replace(found, lines=tuple(kept))
+    hidden = named(
+        "order", [number(line.order, 5) for line in found.lines if line.order not in [other.order for other in kept]]
+    )
+    remark = f"not determined: {hidden}, where stronger orders that change with the speed have side lines"
+    return replace(found, lines=tuple(kept), remarks=(*found.remarks, remark))
 
 
 def modes_of(recordings: Sequence[Recording]) -> RingModes | None:

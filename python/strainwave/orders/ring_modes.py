@@ -234,7 +234,9 @@ def _bearing(uneven: Sequence[OrderLine], per_input: float) -> BearingCandidates
     turns = bearing_candidates(orders, sigmas, outer_speed=-per_input)
     counts = {stands.balls, turns.balls}
     balls = counts.pop() if len(counts) == 1 else None
-    return replace(stands, candidates=(*stands.candidates, *turns.candidates), balls=balls)
+    remarks = tuple(dict.fromkeys((*stands.remarks, *turns.remarks)))
+    chance = max(stands.chance, turns.chance)
+    return replace(stands, candidates=(*stands.candidates, *turns.candidates), balls=balls, chance=chance, remarks=remarks)
 
 
 def _too_little(spectrum: OrdersOverSpeed) -> str:

@@ -144,3 +144,9 @@ def test_what_cannot_be_fitted_is_refused(
 ) -> None:
     with pytest.raises(ValueError, match=why):
         sw.diagnose.wear_life(work, tests, limits)
+
+
+@pytest.mark.parametrize("sigma", [{"ply": 1.0}, {"play": float("nan")}, {"play": -1e-5}])
+def test_deviations_that_are_none_are_refused(sigma: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="sigma"):
+        sw.diagnose.wear_life([0.0, 1e6, 2e6, 3e6], {"play": [1e-4, 1.3e-4, 1.6e-4, 1.9e-4]}, {"play": 4e-4}, sigma=sigma)

@@ -26,6 +26,7 @@ from strainwave import Drive, _core, kinematic_error, loads, stiffness
 from strainwave._core import Gear
 from strainwave.equality import ComparedByFields
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES, MAX_RELATIVE_ERROR
 from strainwave.identification.candidates.torsion.candidate import merged
 from strainwave.identification.candidates.torsion.dissipation import maxwell, pairs, unit_traces
@@ -161,7 +162,7 @@ def _fitted(
     sigmas = sigma_by_blocks(problem, x, whole_fit.estimates)
     apart = np.array([max((_apart(each.path, best, rival) for rival in rivals), default=0.0) for each in whole_fit.estimates])
     twist = float(np.std(whole.measured[0] - whole.angle / drive.gear.kinematics.ratio))
-    reached = float(np.abs(whole.gear_torque(whole_fit.model)).max())
+    reached = float(np.abs(whole.gear_torque(whole_fit.model, nuisances_of(whole_fit))).max())
     return ElasticCandidate(best.name, whole_fit, np.hypot(sigmas, apart), best.error, twist, reached)
 
 

@@ -412,9 +412,9 @@ class DrivenLog(ComparedByFields):
             derivatives[unknown, self.channels.index(name)] = 1.0
         return predicted, derivatives
 
-    def gear_torque(self, model: Drive) -> Array:
+    def gear_torque(self, model: Drive, nuisances: Array) -> Array:
         """Return the torque that the gear transmits at the instants compared [N.m], shape (n,)."""
-        run, _, first = self._run(driven(model), [], np.array([self.motion.initial[name] for name in self.begins]))
+        run, _, first = self._run(driven(model), [], nuisances[len(nuisances) - len(self.begins) :])
         torque: Array = run["torque"][first:]
         return torque
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from strainwave import Drive, hysteresis, loads, stiffness, structure
 from strainwave.files.recording import Recording
 from strainwave.identification.candidates.elastic import DELAY, ElasticCandidate, fit_elastic
-from strainwave.identification.candidates.motion_candidate import MotionCandidate, spread_by_blocks
+from strainwave.identification.candidates.motion_candidate import MotionCandidate, nuisances_of, spread_by_blocks
 from strainwave.identification.candidates.plain import MAX_DELAY_SAMPLES
 from strainwave.identification.checks.logs import inertias_of_load
 from strainwave.identification.experiments.drive_log import DrivenLog
@@ -357,7 +357,7 @@ def picture_of_twist(fit: Fit, unit: str) -> Picture:
     turned = log.angle / gear.kinematics.ratio - gear.kinematic_error.error(log.angle)
     measured, modelled = turned - log.measured[0], turned - part.predicted[0]
     columns = {
-        "torque": log.gear_torque(part.model),
+        "torque": log.gear_torque(part.model, nuisances_of(fit)),
         "twist": measured - modelled.mean(),
         "modelled": modelled - modelled.mean(),
     }

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from strainwave.files.identified_tables import RANGES
 from strainwave.files.recording import Recording
+from strainwave.identification.candidates.motion_candidate import nuisances_of
 from strainwave.identification.experiments.drive_log import DrivenLog
 from strainwave.identification.experiments.motion_log import MotionLog, transmitted_torque
 from strainwave.identification.reading.recognise import Recognised
@@ -40,7 +41,7 @@ def measured_range(result: FileResult, ratio: float) -> dict[str, tuple[float, f
     if result.between is not None and not result.is_in_current:
         between = result.between.parts[0]
         assert isinstance(between.experiment, DrivenLog)
-        found["output_torque"] = between.experiment.gear_torque(between.model)
+        found["output_torque"] = between.experiment.gear_torque(between.model, nuisances_of(result.between))
     return {name: (float(values.min()), float(values.max())) for name in RANGES if len(values := found.get(name, np.empty(0)))}
 
 

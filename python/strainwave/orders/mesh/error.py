@@ -14,6 +14,7 @@ from strainwave.orders.mesh.harmonics import Harmonics
 from strainwave.orders.mesh.loads import RELATIVE_NOISE, LoadFit, load_fit
 from strainwave.orders.mesh.spring import spring_of, transmission_error
 from strainwave.presentation import counted
+from strainwave.statistics.scale import SIGNIFICANCE_SIGMA
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -125,8 +126,10 @@ def error_fit(error: Harmonics, column: Harmonics | None, given: Any, loads: sli
         shift, beyond = _beyond_first_order(fit, error, varies=column is None)
     by_noise = error.noise * np.sqrt(log(error.waves.size / false_alarm) / len(chosen))
     least = max(by_noise, RELATIVE_NOISE * float(np.abs(fit.error).max()))
-    shown = np.where(np.abs(fit.error) < least, 0.0, fit.error)
-    made = (np.abs(beyond[loads]).max(axis=0) > error.noise) & (shown == 0.0)
+    by_others = np.abs(beyond[loads]).max(axis=0)  # products of the orders that the table has
+    is_open = (np.abs(fit.error) < SIGNIFICANCE_SIGMA * orders.sigma) & (np.abs(fit.error) < by_others)
+    shown = np.where((np.abs(fit.error) < least) | is_open, 0.0, fit.error)
+    made = (by_others > error.noise) & (shown == 0.0) & (orders.variation == 0.0)
     unlike = np.sqrt(np.mean(np.abs((error.waves - beyond)[loads][:, made]) ** 2, axis=0)).max(initial=0.0)
     return replace(fit, error=shown, orders=replace(orders, unlike=float(unlike / max(np.abs(shown).max(initial=0.0), 1e-300))))
 

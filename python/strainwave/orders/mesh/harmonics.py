@@ -30,6 +30,7 @@ MIN_ORDERS_OF_NOISE = 16  # of fewer a quarter is no sample of noise
 FLOOR_QUANTILE = 0.25  # of the squares of all amplitudes: noise makes it as long as three of four orders contain something
 MAX_LEVEL_RATIO = 10.0  # of the floors of the lower and the higher orders; noise of 16 orders exceeds it in 2 % of tables
 RELATIVE_ROUNDING = 1e-10  # of the largest amplitude: a smaller one is rounding
+ROUNDING = float(np.finfo(float).eps)  # of the largest mean, likewise
 MAX_OTHER_ORDER = 0.1  # of the largest amplitude, of an order that is no multiple of `repeats`
 FALSE_REFUSAL = 1e-6  # probability that noise makes such an order
 UNEVEN_GAP = 1.5  # times the usual distance of angles, from which a gap is named
@@ -62,8 +63,9 @@ class Harmonics:
         Args:
             false_alarm: probability that noise alone makes any order of any load stand out
         """
-        squares = np.abs(self.waves) ** 2
-        threshold = max(self.noise**2 * log(squares.size / false_alarm), float(squares.max()) * RELATIVE_ROUNDING**2)
+        squares, rounding = np.abs(self.waves) ** 2, ROUNDING * float(np.abs(self.mean).max(initial=0.0))
+        largest = max(float(squares.max()) * RELATIVE_ROUNDING**2, rounding**2)
+        threshold = max(self.noise**2 * log(squares.size / false_alarm), largest)
         return np.asarray((squares > threshold).any(axis=0))
 
 

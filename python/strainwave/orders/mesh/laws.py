@@ -213,7 +213,7 @@ def _with_error(laws: MeshLaws, table: MeshTable, error: Harmonics, loads: slice
     rows = np.isin(load, np.arange(len(error.torque))[loads])
     squares, unexplained = (float(np.mean(of[rows] ** 2)) for of in (measured - error.mean[load], left))
     power = np.mean(np.abs(error.waves[loads]) ** 2, axis=0)
-    columns = error.orders, np.abs(fit.error), fit.orders.sigma, np.angle(fit.error), power / power.sum()
+    columns = error.orders, np.abs(fit.error), fit.orders.sigma, np.angle(fit.error), power / max(power.sum(), 1e-300)
     return replace(
         laws,
         kinematic_error=kinematic_error.Scaled(law=law, load_sensitivity=sensitivity) if sensitivity else law,

@@ -140,7 +140,7 @@ def load_fit(data: Harmonics, compliance: Array | None) -> LoadFit:
     several = len(torque) >= MIN_LOADS and bool(data.waves.any())
     others = [[], [-torque * compliance]] if several and compliance is not None else [[]]
     models = [_fit(data, columns, falls=falls) for falls in sorted({False, several and sizes > 1}) for columns in others]
-    believed = max(data.noise, RELATIVE_NOISE * float(np.abs(data.waves).max()), 1e-300)
+    believed = max(data.noise, RELATIVE_NOISE * float(np.abs(data.waves).max()), 1e-150)
     without_fall = min((model for model in models if not model.falls), key=lambda model: model.criterion(believed))
     chosen = min(models, key=lambda model: model.criterion(believed))
     chosen = without_fall if chosen.squares > MAX_LEFT_BY_FALL * without_fall.squares else chosen

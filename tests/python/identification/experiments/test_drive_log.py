@@ -135,6 +135,7 @@ def test_delays_shift_channels_and_their_derivatives() -> None:
         log.with_delays("torque")
 
 
+@pytest.mark.slow("identification")
 def test_an_initial_torque_and_speed_that_are_wrong_are_corrected_within_their_limits() -> None:
     """The drive begins at rest without load; damping lets the vibration live for the first samples only."""
     log = DrivenLog.of(measured(0), TRUTH, ["output_angle"], initial={"torque": 2.0, "output_speed": 0.02})
@@ -168,7 +169,7 @@ def test_known_torque_of_other_bodies_acts_at_the_output() -> None:
     log = DrivenLog.of(recording, TRUTH)
     later = log.time > 0.5  # when the vibration of the beginning has decayed
     predicted, _ = log.predict(TRUTH, [], np.zeros(1))
-    off = log.gear_torque(TRUTH)[later] - np.interp(log.time, run.time, run["torque"])[later]
+    off = log.gear_torque(TRUTH, np.zeros(len(log.nuisances)))[later] - np.interp(log.time, run.time, run["torque"])[later]
     assert abs(off.mean()) < 0.01  # of 5 N.m; where friction turns over, smoothing rounds the motion for a moment
     assert predicted[0, later] == pytest.approx(log.measured[0, later], abs=2e-5)
 

@@ -499,6 +499,20 @@ def test_what_needs_stages_is_refused_without_them() -> None:
         laws.applied_to("hfuc-25-100", stages=STAGES.replace(circular_spline_stiffness=1e4))
 
 
+@pytest.mark.parametrize("stiffness", [3e4, 3.1e4, np.inf])
+def test_rounding_makes_no_order(stiffness: float) -> None:
+    at, torque = (each.ravel() for each in np.meshgrid(np.radians(np.arange(360.0)), [-40.0, 0.0, 40.0]))
+    for zero in (0.0, 1e-4):
+        assert sw.orders.mesh_laws(MeshTable(at, torque, transmission_error=torque / stiffness + zero)).orders == ()
+
+
+def test_a_variation_of_another_order_is_no_misfit() -> None:
+    at, torque = (each.ravel() for each in np.meshgrid(TURN, [-40.0, -20.0, 0.0, 20.0, 40.0]))
+    error = 2e-4 * np.sin(2.0 * at) + torque / (3e4 * (1.0 + 0.05 * np.cos(7.0 * at)))
+    (second,) = sw.orders.mesh_laws(MeshTable(at, torque, transmission_error=error)).orders
+    assert abs(second.amplitude - 2e-4) < 2.0 * second.sigma < 2e-6
+
+
 def test_a_stiffness_of_other_units_is_refused() -> None:
     in_millinewton = replace(table(BOTH_SENSES), torque=1e-3 * table(BOTH_SENSES).torque)
     laws = sw.orders.mesh_laws(in_millinewton)
