@@ -249,7 +249,7 @@ def _of_tests(argument: str, given: Mapping[str, float] | None, tests: Mapping[s
     if unknown := [name for name in given or {} if name not in tests]:
         raise ValueError(f"{argument} has {listed(map(quoted, unknown))}; the tests have {listed(map(quoted, tests))}")
     return {
-        name: arguments.number(f"{argument}[{quoted(name)}]", value, QUANTITY_UNITS[name], low=0.0)
+        name: arguments.number(f"{argument}[{quoted(name)}]", value, QUANTITY_UNITS[name], "[)", 0.0)
         for name, value in (given or {}).items()
     }
 
