@@ -38,7 +38,7 @@ def prefixed(largest: float, unit: str) -> tuple[float, str]:
 # ---- Kinematic error -------------------------------------------------------------------------------------------------
 
 TURN = np.linspace(0.0, 2.0 * np.pi, 721)
-WARMER = 40.0  # K, by which an error over the temperature is drawn a second time
+WARMING_OF_ERROR = 40.0  # K, by which an error over the temperature is drawn a second time
 DRAWN_SPEED = 100.0  # rad/s, at which a random error is drawn
 NOISES = (sw.kinematic_error.Stochastic, sw.kinematic_error.MicroSlip)
 
@@ -73,8 +73,8 @@ def error(models: Shown) -> list[Draw]:
                 if sensitive:
                     axes.plot(np.degrees(TURN), factor * under_load(model), label=f"under {LOAD_TORQUE:g} N.m")
                 if warms:
-                    warm = model.replace(temperature=model.reference_temperature + WARMER)
-                    axes.plot(np.degrees(TURN), factor * error_of(warm, TURN), label=f"{WARMER:g} K warmer")
+                    warm = model.replace(temperature=model.reference_temperature + WARMING_OF_ERROR)
+                    axes.plot(np.degrees(TURN), factor * error_of(warm, TURN), label=f"{WARMING_OF_ERROR:g} K warmer")
             axes.set(xlabel="input angle [deg]", ylabel=f"error at the output [{unit}]", xticks=np.arange(0, 361, 60))
 
         return draw
@@ -100,7 +100,7 @@ def spectrum(models: Shown) -> list[Draw]:
 
 # ---- Friction --------------------------------------------------------------------------------------------------------
 
-SLOW = 1.0  # rad/s, at which friction is drawn over something else
+SPEED_OF_FRICTION = 1.0  # rad/s, at which friction is drawn over something else
 
 
 def asked(model: Any, name: str, otherwise: float) -> float:
@@ -114,7 +114,7 @@ def steady(models: Shown) -> list[Draw]:
     law = models[0][1]
     fastest = 10.0 * asked(law, "stribeck_speed", 1.0)
     slowest = 1e-9 * fastest
-    loaded = law.steady(SLOW, load=LOAD_TORQUE) != law.steady(SLOW)
+    loaded = law.steady(SPEED_OF_FRICTION, load=LOAD_TORQUE) != law.steady(SPEED_OF_FRICTION)
 
     def draw(axes: Axes) -> None:
         for speed in (np.linspace(-fastest, -slowest, 401), np.linspace(slowest, fastest, 401)):
@@ -133,9 +133,13 @@ def over_contact(models: Shown) -> list[Draw]:
     law = models[0][1]
     fast = 10.0 * asked(law, "stribeck_speed", 1.0)
     ranges = {
-        "angle": (np.linspace(0.0, getattr(law, "domain_end", 2.0 * np.pi), 721), "angle [rad]", (SLOW,)),
-        "load": (np.linspace(-LOAD_TORQUE, LOAD_TORQUE, 401), "transmitted torque [N.m]", (SLOW, -SLOW)),
-        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]", (SLOW, fast)),
+        "angle": (np.linspace(0.0, getattr(law, "domain_end", 2.0 * np.pi), 721), "angle [rad]", (SPEED_OF_FRICTION,)),
+        "load": (
+            np.linspace(-LOAD_TORQUE, LOAD_TORQUE, 401),
+            "transmitted torque [N.m]",
+            (SPEED_OF_FRICTION, -SPEED_OF_FRICTION),
+        ),
+        "temperature": (np.linspace(273.15, 333.15, 121), "temperature [K]", (SPEED_OF_FRICTION, fast)),
     }
 
     def over(name: str) -> Draw:
@@ -151,7 +155,7 @@ def over_contact(models: Shown) -> list[Draw]:
         return draw
 
     def varies(name: str) -> bool:
-        friction = law.steady(SLOW, **({"load": LOAD_TORQUE} | {name: ranges[name][0]}))
+        friction = law.steady(SPEED_OF_FRICTION, **({"load": LOAD_TORQUE} | {name: ranges[name][0]}))
         return bool(np.ptp(friction) > 1e-9 * np.abs(friction).max())
 
     return [over(name) for name in ranges if varies(name)]
@@ -223,8 +227,8 @@ def slipped(model: Any) -> float:
         return float(model.springs.twist(4.0 * model.friction))
     reaches = np.geomspace(1e-6, 10.0, 281)
     secant = np.array([model.trace([0.0, reach])[-1] / reach for reach in reaches])
-    known = getattr(getattr(model, "density", None), "limit", reaches[-1])
-    return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(known))
+    limit = getattr(getattr(model, "density", None), "limit", reaches[-1])
+    return min(float(reaches[np.argmax(secant < secant.max() / 3.0)]), float(limit))
 
 
 # ---- Variation and ring ----------------------------------------------------------------------------------------------
@@ -258,8 +262,9 @@ def ring(models: Shown) -> list[Draw]:
         return np.asarray(0.5 / (modes.mass[place] * dynamic))
 
     def draw(axes: Axes) -> None:
-        each = ((place, waves) for place, waves in enumerate(modes.waves))
-        motion = sum(answer(place, FORCE_ORDER + sign * waves) for place, waves in each for sign in (1.0, -1.0))
+        motion = sum(
+            answer(place, FORCE_ORDER + sign * waves) for place, waves in enumerate(modes.waves) for sign in (1.0, -1.0)
+        )
         factor, unit = prefixed(float(np.abs(motion).max()), "m/N")
         axes.semilogy(speed, factor * np.abs(motion))
         axes.set(xlabel="input speed [rad/s]", ylabel=f"order {FORCE_ORDER:g} of u over force [{unit}]")

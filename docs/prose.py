@@ -13,8 +13,8 @@ GREEK = (
     "[Ss]igma|[Tt]au|[Pp]hi|[Cc]hi|[Pp]si|[Oo]mega"
 )
 SYMBOL = rf"\b(?:(?:{GREEK}|[A-Za-z])_[A-Za-z0-9]+|(?:{GREEK}))(?:\^\d)?\b"  # of a formula, within words
-LINE = 66  # characters of a formula that fit on a line
-SPACE = 5  # characters between its parts
+MAX_FORMULA_LINE = 66  # characters of a formula that fit on a line
+FORMULA_GAP = 5  # characters between its parts
 
 
 def markdown(words: str) -> str:
@@ -45,7 +45,7 @@ def filled(formula: str) -> list[str]:
     """Return lines with as many of its parts as fit."""
     rows: list[str] = []
     for part in re.split(r"(?<=,)\s*\\q?quad\s*", formula):
-        if rows and width(rows[-1]) + SPACE + width(part) <= LINE:
+        if rows and width(rows[-1]) + FORMULA_GAP + width(part) <= MAX_FORMULA_LINE:
             rows[-1] += rf" \qquad {part}"
         else:
             rows.append(part)

@@ -147,12 +147,15 @@ def without_bare_knees(estimates: Iterable[FileEstimate]) -> tuple[FileEstimate,
     The slope between two knees is identified only if these are apart.
     """
     judged = tuple(_apart(estimates))
-    slopes = {each.path: each for each in judged}
+    slopes = {estimate.path: estimate for estimate in judged}
     return tuple(
-        replace(each, why=each.why or _bare([slopes.get(f"gear.stiffness.{name}") for name in SLOPES_AT_KNEE[each.path]]))
-        if each.path in SLOPES_AT_KNEE
-        else each
-        for each in judged
+        replace(
+            estimate,
+            why=estimate.why or _bare([slopes.get(f"gear.stiffness.{name}") for name in SLOPES_AT_KNEE[estimate.path]]),
+        )
+        if estimate.path in SLOPES_AT_KNEE
+        else estimate
+        for estimate in judged
     )
 
 

@@ -73,8 +73,8 @@ def _spring(laws: MeshLaws, before: GearSet, stages: Any) -> dict[str, Any]:
     gear, law, varying = before.gear, laws.stiffness, laws.stiffness_variation
     in_series = 0.0 if stages is None else series_compliance(gear.replace(structure=stages))
     old = series_compliance(gear)
-    known = any(not of.assumed for path, of in before.sources.items() if path.startswith("gear.stiffness."))
-    if law is not None and known:
+    is_known = any(not of.assumed for path, of in before.sources.items() if path.startswith("gear.stiffness."))
+    if law is not None and is_known:
         whole_before = 1.0 / (1.0 / float(gear.stiffness.tangent(0.0)) + old)
         _check_size(float(law.tangent(0.0)), whole_before, laws.source, before.name)
     if law is None and in_series == old:

@@ -1,4 +1,4 @@
-r"""How the orders of a transmission error change with the load.
+r"""Change of the orders of a transmission error with the load.
 
 With e the complex amplitudes of the kinematic error without load, v those of the relative variation of the stiffness, c the
 compliance at the load,
@@ -64,7 +64,7 @@ class LoadFit:
 
     @cached_property
     def left(self) -> Complex:
-        """What the model leaves of the waves [rad], shape (m, h)."""
+        """Residual of the waves [rad], shape (m, h)."""
         return np.asarray(self.data.waves - self.columns @ self.coefficients)
 
     @property

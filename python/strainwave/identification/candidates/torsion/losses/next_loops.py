@@ -68,9 +68,9 @@ def with_bearing(fit: LossFit, gear: Gear) -> LossFit:
     shifts = np.where(fit.sigma_by_noise() > MAX_SHARE_SIGMA, 0.0, fit.shifts)
     if any(loop.ratio for loop in fit.loops) or series_compliance(gear) != 0.0:
         return replace(fit, shifts=shifts)
-    known, largest = fit.widths.sources, fit.loops[fit.largest]
-    bearing = [source for source in possible_sources(True, largest.is_timed) if source not in known]  # one shape each
-    model, count = replace(fit.widths, sources=[*bearing, *known]), len(bearing)
+    own_sources, largest = fit.widths.sources, fit.loops[fit.largest]
+    bearing = [source for source in possible_sources(True, largest.is_timed) if source not in own_sources]  # one shape each
+    model, count = replace(fit.widths, sources=[*bearing, *own_sources]), len(bearing)
     unit_loss = model.cycle_loss(replace(largest, ratio=abs(gear.kinematics.ratio)), fit.curves[fit.largest])
     covariance = np.pad(fit.covariance, ((count, 0), (count, 0)))
     covariance[:count, :count] = np.diag((PRIOR_SHARE_SIGMA * fit.total / unit_loss[:count]) ** 2)

@@ -169,11 +169,11 @@ def _why(fit: LossFit, place: int) -> str:
     covariance, further = fit.total**2 * fit.share_rows @ fit.covariance @ fit.share_rows.T, next_loops(fit, place)
     related = np.abs(covariance[place]) / np.sqrt(covariance[place, place] * np.diag(covariance))
     together = [place, *(int(other) for other in np.flatnonzero(related > MIN_CORRELATION_OF_PARTNERS) if other != place)]
-    known = sum_by_covariance(covariance, together, fit.total * fit.shares, fit.names, "J")
-    by_forms_of_sum = float(fit.sigma_by_forms(fit.shifts[:, together] @ known.factors))
-    known = replace(known, sigma=float(np.hypot(known.sigma, by_forms_of_sum * abs(fit.total))))
-    is_known = len(together) > 1 and known.sigma < MAX_SHARE_SIGMA * abs(fit.total)
-    return f"{known}, {further}" if is_known else further
+    joint_loss = sum_by_covariance(covariance, together, fit.total * fit.shares, fit.names, "J")
+    by_forms_of_sum = float(fit.sigma_by_forms(fit.shifts[:, together] @ joint_loss.factors))
+    joint_loss = replace(joint_loss, sigma=float(np.hypot(joint_loss.sigma, by_forms_of_sum * abs(fit.total))))
+    is_known = len(together) > 1 and joint_loss.sigma < MAX_SHARE_SIGMA * abs(fit.total)
+    return f"{joint_loss}, {further}" if is_known else further
 
 
 def _remarks(fit: LossFit, last: LossShare) -> Iterator[str]:
